@@ -1,0 +1,103 @@
+"""Reading study files: TOML in, a validated Study out, or one line that says what is wrong."""
+
+import difflib
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from data.errors import InputError
+from data.study import Study
+
+_BUILT_IN = resources.files("data") / "studies"
+
+
+def built_in_studies() -> tuple[str, ...]:
+    """Names of the studies that ship with Elbowroom."""
+    return tuple(sorted(f.name[:-5] for f in _BUILT_IN.iterdir() if f.name.endswith(".toml")))
+
+
+def study_text(source: str | Path) -> str:
+    """The TOML text of a study, by the name of a built-in one or by a file's path.
+
+    Raises
+    ------
+    InputError
+        If there is neither such a name nor such a file, or it is no UTF-8 text.
+    """
+    if str(source) in built_in_studies():
+        return (_BUILT_IN / f"{source}.toml").read_text(encoding="utf-8")
+    path = Path(source)
+    if not path.is_file():
+        names = ", ".join(built_in_studies())
+        raise InputError(f"study {str(source)!r}: no such file, and no built-in study (built in: {names})")
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not UTF-8 text (byte {error.start})") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def read_study(source: str | Path) -> Study:
+    """A validated study, by the name of a built-in one or by a file's path.
+
+    Raises
+    ------
+    InputError
+        One line: the file, the key, what was found and what is valid.
+    """
+    return parse_study(study_text(source), where=str(source))
+
+
+def parse_study(text: str, where: str) -> Study:
+    """A validated study from TOML text; ``where`` names the text in an error."""
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{where}: not valid TOML: {error}") from None
+    try:
+        return Study.model_validate(content)
+    except ValidationError as error:
+        # A misspelt key is the likelier cause than the key that is missing in its place.
+        first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
+        raise InputError(f"{where}: {_in_one_line(first)}") from None
+
+
+def _in_one_line(error: ErrorDetails) -> str:
+    place = ".".join(str(part + 1) if isinstance(part, int) else part for part in error["loc"])
+    given = error["input"]
+    match error["type"]:
+        case "extra_forbidden":
+            *parents, key = error["loc"]
+            valid = sorted(_part_at(parents).model_fields)
+            near = difflib.get_close_matches(str(key), valid, n=1)
+            hint = f" (did you mean {near[0]}?)" if near else ""
+            return f"{place}: unknown key{hint}; valid keys: {', '.join(valid)}"
+        case "missing":
+            return f"{place}: missing"
+        case "literal_error":
+            return f"{place}: {given!r} is not one of: {error['ctx']['expected'].replace(' or ', ', ')}"
+        case "string_pattern_mismatch":
+            return f"{place}: {given!r} is no name: a letter, then up to 39 letters, digits, '_', '.', '-'"
+        case "value_error":
+            said = str(error["ctx"]["error"])
+            return f"{place}: {said}" if place else said
+        case _:
+            said = error["msg"][0].lower() + error["msg"][1:]
+            shown = f", not {given!r}" if isinstance(given, str | int | float | bool) else ""
+            return f"{place}: {said}{shown}"
+
+
+def _part_at(place: list[Any]) -> type[BaseModel]:
+    """The model that a place in the file belongs to."""
+    part: type[BaseModel] = Study
+    for key in place:
+        if isinstance(key, str) and key in part.model_fields:
+            annotation = part.model_fields[key].annotation
+            candidates = [annotation, *get_args(annotation)]
+            part = next((c for c in candidates if isinstance(c, type) and issubclass(c, BaseModel)), part)
+    return part
