@@ -8,7 +8,7 @@ from typing import Literal
 from data.answers import Answer
 
 Source = Literal["human", "simulated"]
-TrialSource = Literal["observed", "simulated"]
+TrialSource = Literal["observed", "simulated", "external"]
 Slot = Literal["A", "B"]
 Outcome = Literal["completed", "stuck", "abandoned", "failed"]
 EventKind = Literal["stuck", "elbow_inversion", "protective_stop"]
@@ -70,7 +70,7 @@ class StuckEvent:
     sigma_min : float
         Smallest singular value at that moment (SI units).
     phase : str
-        ``approach``, ``edge`` or ``exit``.
+        ``free``, ``approach``, ``edge`` or ``exit``.
     definition : str
         Version of the definition that found it.
     """

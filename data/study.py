@@ -43,6 +43,7 @@ class Question(Part):
     """One question asked after each comparison.
 
     ``polarity`` says whether the mode that ranks first is thereby good: "most force" is not.
+    ``rehearsal`` weighs trial metrics for simulated participants alone; people never meet it.
     """
 
     name: Name
@@ -52,6 +53,7 @@ class Question(Part):
     levels: Literal[2, 3, 5]
     polarity: Polarity = "higher_is_better"
     answers: tuple[Text, ...] = ()
+    rehearsal: dict[str, float] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _answers_fit_the_scale(self) -> Self:
