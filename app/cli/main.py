@@ -1,0 +1,55 @@
+"""The command line: which commands there are, and how an error becomes one plain line."""
+
+import sys
+from collections.abc import Sequence
+
+import typer
+
+from app.cli import demo, doctor, exchange, report, serve, simulate, study, sweep, trial
+from data.errors import ElbowroomError
+
+cli = typer.Typer(
+    name="elbowroom",
+    help="Find out which robot controller people prefer, and why.",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+cli.command("demo")(demo.demo)
+cli.command("serve")(serve.serve)
+cli.command("simulate")(simulate.simulate)
+cli.command("trial")(trial.trial)
+cli.command("sweep")(sweep.sweep)
+cli.command("report")(report.report)
+cli.command("export")(exchange.export)
+cli.command("import")(exchange.import_)
+cli.add_typer(study.cli, name="study")
+cli.command("doctor")(doctor.doctor)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit: 0 done, 1 failed, 2 wrong input."""
+    sys.exit(run(arguments))
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; whatever the user can act on is one line on stderr and an exit code."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = cli(args=given or ["--help"], prog_name="elbowroom", standalone_mode=False)
+    except (typer.Abort, KeyboardInterrupt):
+        return _fail("interrupted", 130)
+    except typer.TyperException as error:
+        message = getattr(error, "format_message", error.__str__)
+        return _fail(message(), 2)
+    except ElbowroomError as error:
+        return _fail(str(error), error.exit_code)
+    except BrokenPipeError:
+        return 1
+    return code if isinstance(code, int) else 0
+
+
+def _fail(message: str, code: int) -> int:
+    print(f"elbowroom: {' '.join(message.split())}", file=sys.stderr)
+    return code

@@ -1,0 +1,75 @@
+"""`elbowroom report`: from stored or collected responses to a Bradley-Terry report."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.options import OutOption, SimulatedOption, StoredStudyOption, StoreOption
+from data.errors import InputError
+
+
+class Engine(StrEnum):
+    """How the posterior is computed."""
+
+    fast = "fast"
+    pymc = "pymc"
+    gibbs = "gibbs"
+
+
+class Link(StrEnum):
+    """How ties enter the likelihood."""
+
+    cumulative = "cumulative"
+    adjacent = "adjacent"
+
+
+def report(
+    out: OutOption,
+    store: StoreOption = None,
+    responses: Annotated[
+        Path | None, typer.Option("--responses", metavar="FILE.csv", help="Responses from a CSV instead.")
+    ] = None,
+    study: StoredStudyOption = None,
+    engine: Annotated[Engine, typer.Option(help="fast is the default and needs no compiler.")] = Engine.fast,
+    pooled: Annotated[bool, typer.Option("--pooled", help="Leave participants' differences out.")] = False,
+    no_side_effect: Annotated[
+        bool, typer.Option("--no-side-effect", help="Leave the preference for side A out.")
+    ] = False,
+    prior_sd: Annotated[
+        float, typer.Option("--prior-sd", metavar="X", help="Sigma of the ability prior alone.")
+    ] = 1.0,
+    link: Annotated[Link, typer.Option(help="adjacent: three-level questions only.")] = Link.cumulative,
+    seed: Annotated[int, typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the sampler.")] = 2017,
+    include_simulated: SimulatedOption = False,
+) -> None:
+    """Rank the modes per question and write report.html, figures and tables.
+
+    Examples:
+
+    elbowroom report --store study.sqlite --out report
+
+    elbowroom report --responses answers.csv --study carmichael2017 --out report
+    """
+    from app.reporting import Request, make_report
+
+    if store is not None and responses is not None:
+        raise InputError("give --store or --responses, not both")
+    if not 0.01 <= prior_sd <= 100:
+        raise InputError(f"--prior-sd: {prior_sd:g} is not between 0.01 and 100")
+    make_report(
+        Request(
+            out=out,
+            store=store,
+            responses=responses,
+            study=study,
+            include_simulated=include_simulated,
+            engine=engine.value,
+            pooled=pooled,
+            side_effect=not no_side_effect,
+            prior_sd=prior_sd,
+            link=link.value,
+            seed=seed,
+        )
+    )

@@ -1,0 +1,88 @@
+"""From responses, stored or collected, to a fitted and written report."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+
+from analysis.console_ranking import print_ranking
+from analysis.fit import fit
+from analysis.report import ReportResult, write_report
+from analysis.results import Engine, FitSettings, Link
+from app.cli.progress import progress
+from app.studies import open_study
+from data.locations import check_folder, default_store
+from data.response_csv import read_response_csv
+from data.responses import ResponseTable, StuckTable
+from data.store import Store
+from data.study import Study
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a report is asked for, in the words of the command line's options."""
+
+    out: Path
+    store: str | None = None
+    responses: Path | None = None
+    study: str | None = None
+    include_simulated: bool = False
+    engine: Engine = "fast"
+    pooled: bool = False
+    side_effect: bool = True
+    prior_sd: float = 1.0
+    link: Link = "cumulative"
+    seed: int = 2017
+
+
+@dataclass(frozen=True)
+class _Evidence:
+    table: ResponseTable
+    stuck: StuckTable | None
+    study: Study | None
+
+
+def make_report(request: Request) -> ReportResult:
+    """Read, check, fit, write and print a report.
+
+    Everything that can be wrong with the input is found before anything is sampled, and the folder is
+    known to be writable before as well.
+
+    Raises
+    ------
+    InputError
+        Wrong input, exit 2.
+    ElbowroomError
+        A folder that cannot be written, exit 1.
+    """
+    evidence = _read(request)
+    settings = FitSettings(
+        engine=request.engine,
+        pooled=request.pooled,
+        side_effect=request.side_effect,
+        prior_sd=request.prior_sd,
+        link=request.link,
+        seed=request.seed,
+    )
+    check_folder(request.out)
+    with progress("Bradley-Terry model") as report:
+        fitted = fit(evidence.table, settings, progress=report)
+    with progress("Report") as report:
+        written = write_report(
+            evidence.table, fitted, request.out, stuck=evidence.stuck, study=evidence.study, progress=report
+        )
+    print_ranking(fitted, Console(), is_simulated=evidence.table.is_simulated)
+    return written
+
+
+def _read(request: Request) -> _Evidence:
+    if request.responses is not None:
+        study = open_study(request.study).study if request.study else None
+        return _Evidence(read_response_csv(request.responses, study), None, study)
+    with Store.open(request.store or default_store(), create=False) as store:
+        stored = store.study(request.study)
+        return _Evidence(
+            store.responses_table(stored, include_simulated=request.include_simulated),
+            store.stuck_table(stored, include_simulated=request.include_simulated),
+            stored.study,
+        )

@@ -1,0 +1,145 @@
+"""The command line says what is wrong in one plain line, and does what it says."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from app.cli.main import cli, run
+
+RESPONSES = """participant,question,mode_a,mode_b,response
+p1,Q1,M1,M2,A>>B
+p1,Q1,M2,M3,B>A
+p1,Q1,M3,M1,A=B
+p2,Q1,M1,M2,B>A
+p2,Q1,M2,M3,A>B
+p2,Q1,M3,M1,B>>A
+"""
+
+
+def only_line(captured: str) -> str:
+    lines = captured.splitlines()
+    assert len(lines) == 1, captured
+    assert lines[0].startswith("elbowroom: ")
+    assert not set(captured) & set("╭╮╰╯│─")
+    return lines[0].removeprefix("elbowroom: ")
+
+
+@pytest.fixture
+def responses(tmp_path: Path) -> Path:
+    path = tmp_path / "answers.csv"
+    path.write_text(RESPONSES)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (
+            ["study", "check", "nowhere.toml"],
+            "no such file, and no built-in study (built in: carmichael2017)",
+        ),
+        (["trial", "--mode", "M9"], "mode: 'M9' is not one of: M1, M2, M3"),
+        (["trial", "--mode", "M1", "--operator-seed", "-1"], "--operator-seed"),
+        (["report", "--store", "a.sqlite", "--responses", "b.csv", "--out", "r"], "not both"),
+        (["report", "--responses", "nowhere.csv", "--out", "r"], "nowhere.csv"),
+        (["report", "--responses", "x.csv", "--engine", "quick", "--out", "r"], "'fast', 'pymc', 'gibbs'"),
+        (["report", "--store", "nosuch://x", "--out", "r"], "nosuch"),
+        (["report", "--store", "missing.sqlite", "--out", "r"], "missing.sqlite"),
+        (["import"], "--responses FILE.csv and --stuck FILE.csv"),
+        (["sweep", "--right-edge", "1:2", "--out", "s"], "--right-edge: '1:2' is no range"),
+        (["no-such-command"], "no-such-command"),
+        (["demo", "--participants", "0"], "--participants"),
+    ],
+)
+def test_wrong_input_is_one_plain_line_and_exit_2_and_nothing_is_written(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(arguments) == 2
+    assert said in only_line(capsys.readouterr().err)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_study_file_with_an_unknown_method_is_refused_with_the_valid_ones(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from data.study_file import study_text
+
+    path = tmp_path / "mine.toml"
+    path.write_text(study_text("carmichael2017").replace('method = "dls"', 'method = "dsl"', 1))
+    assert run(["study", "check", str(path)]) == 2
+    assert "mode M1: method: 'dsl' is not one of: asymmetric_dls, " in only_line(capsys.readouterr().err)
+
+
+def test_a_report_from_a_csv_ranks_and_writes_the_contract_s_files(
+    responses: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "report"
+    assert run(["report", "--responses", str(responses), "--out", str(out)]) == 0
+    worth = pd.read_csv(out / "worth.csv")
+    assert worth["worth_mean"].sum() == pytest.approx(1.0)
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["ranked"] is True
+    for name in ("report.html", "pairwise.csv", "parameters.csv", "posterior.nc"):
+        assert (out / name).stat().st_size > 0
+    assert "M1" in capsys.readouterr().out
+
+
+def test_an_unwritable_folder_is_exit_1_and_one_line(
+    responses: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["report", "--responses", str(responses), "--out", "/proc/elbowroom/report"]) == 1
+    assert "/proc/elbowroom/report: cannot be written" in only_line(capsys.readouterr().err)
+
+
+def test_a_file_in_place_of_a_folder_is_wrong_input(
+    responses: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    assert run(["report", "--responses", str(responses), "--out", str(blocked / "report")]) == 2
+    assert f"{blocked} is a file, not a folder" in only_line(capsys.readouterr().err)
+
+
+def test_every_command_has_a_help_with_an_example() -> None:
+    for command in cli.registered_commands:
+        assert command.callback is not None
+        assert "elbowroom " in (command.callback.__doc__ or ""), command.name
+
+
+def test_one_lap_as_json_says_that_it_is_simulated(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["trial", "--mode", "M2", "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["simulated"] is True
+    assert content["outcome"] == "completed"
+    assert content["duration_s"] > 5
+
+
+def test_without_a_compiler_the_doctor_says_what_is_slow_and_fast_still_ranks(
+    responses: Path, tmp_path: Path
+) -> None:
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    environment = os.environ | {"PATH": str(empty)}
+    doctor = subprocess.run(
+        [sys.executable, "-m", "app.cli", "doctor"], env=environment, capture_output=True, text=True
+    )
+    assert "no C++ compiler" in doctor.stdout
+    report = subprocess.run(
+        [sys.executable, "-m", "app.cli", "report", "--responses", str(responses), "--out", "report"],
+        env=environment,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert report.returncode == 0, report.stderr
+    assert "compiler" not in report.stderr
