@@ -1,0 +1,288 @@
+"""Bringing answers and stuck events that were collected elsewhere into a store.
+
+Each import happens whole or not at all, and the same file again changes nothing. The files are the
+response CSV (``data.response_csv``) and the stuck CSV (``data.stuck_csv``).
+"""
+
+import json
+import math
+import re
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import get_args
+
+import pandas as pd
+from sqlalchemy import select
+
+from data.errors import InputError
+from data.records import Comparison, Participant, Slot, Source, StuckEvent, Trial
+from data.response_csv import read_response_csv
+from data.store import Store, StoredStudy
+from data.store.rows import every, first, insert_all
+from data.store.tables import comparisons as comparison_rows
+from data.store.tables import imports, participants, responses
+from data.stuck_csv import StuckStatement, read_stuck_csv
+from data.study import Study
+
+LARGEST_IMPORT = 200_000
+"""Responses; a store keeps each of them as a row of its own."""
+
+_SAFE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,59}")
+_COLUMNS = ["question", "mode_a", "mode_b", "response", "count", "comparison", "repetition", "check"]
+
+
+def import_responses(path: Path, study: Study, toml_text: str, store: Store) -> int:
+    """Add the answers of a response CSV to a study in a store.
+
+    Rows of one participant with the same ``comparison`` belong together. Where a file names no
+    comparisons, rows with the same pair and repetition do; a second answer to the same question, or
+    a count above 1, then begins another comparison. Answers without a participant are kept as pooled.
+
+    Returns
+    -------
+    int
+        Responses that were added: 0 for a file that was imported before.
+
+    Raises
+    ------
+    InputError
+        If the file is wrong, or does not fit what the store has of the study.
+    """
+    table = read_response_csv(path, study)
+    total = int(table.rows["count"].sum())
+    if total > LARGEST_IMPORT:
+        raise InputError(f"{path}: {total} responses; at most {LARGEST_IMPORT} can be imported at once")
+    with store.transaction():
+        stored = store.add_study(study, toml_text)
+        if _was_imported(store, stored, "responses", table.sha256):
+            return 0
+        _refuse_to_mix_pooled(store, stored, path, table.has_participants)
+        added = 0
+        for label in table.rows["participant"].unique():
+            of_them = table.rows[table.rows["participant"] == label]
+            for source in get_args(Source):
+                rows = of_them[of_them["source"] == source]
+                if len(rows):
+                    given = _Answers(store, stored, path, str(label), source, not table.has_participants)
+                    given.read(rows)
+                    added += given.write()
+        _remember(store, stored, "responses", table.sha256, added)
+        return added
+
+
+class _Answers:
+    """One participant's answers on their way into the store."""
+
+    def __init__(
+        self, store: Store, study: StoredStudy, path: Path, label: str, source: Source, pooled: bool
+    ) -> None:
+        self.store, self.path, self.label = store, path, label
+        self.at = store.clock()
+        self.who = _participant_id(store, study, f"pooled-{source}" if pooled else label)
+        self._join(study, source, pooled)
+        self.known = {comparison.id: comparison for comparison in store.comparisons(participant=self.who)}
+        self.new: list[Comparison] = []
+        self.position = max((c.position for c in self.known.values()), default=0)
+        self.answers: dict[tuple[str, str], str] = {}
+        self.unnamed: Counter[tuple[str, ...]] = Counter()
+
+    def _join(self, study: StoredStudy, source: Source, pooled: bool) -> None:
+        with self.store.transaction() as connection:
+            query = select(participants.c.source).where(participants.c.id == self.who)
+            stored = first(connection, query)
+            if stored is None:
+                number = self.store.next_number(study, source)
+                background = {"imported_as": self.label} if self.label not in ("", self.who) else {}
+                joined = Participant(self.who, number, source, self.at, background)
+                self.store.add_participant(study, joined, pooled=pooled)
+            elif stored["source"] != source:
+                raise InputError(f"{self.path}: participant {self.label!r} is both human and simulated")
+
+    def read(self, rows: pd.DataFrame) -> None:
+        """Sort rows into comparisons, refusing those that contradict each other."""
+        for question, a, b, answer, count, name, repetition, check in rows[_COLUMNS].itertuples(index=False):
+            where = f"{self.path}: participant {self.label!r}, comparison {name!r}, {question}"
+            if name and count > 1:
+                raise InputError(f"{where}: one comparison has one answer to a question, not {count}")
+            for _ in range(count):
+                shown = (a, b, str(repetition), str(check))
+                comparison_id = _comparison_id(self.who, name) if name else self._unnamed(shown, question)
+                self._show(comparison_id, int(repetition), a, b, bool(check), where)
+                if self.answers.setdefault((comparison_id, question), answer) != answer:
+                    raise InputError(f"{where}: two different answers")
+
+    def _unnamed(self, shown: tuple[str, ...], question: str) -> str:
+        """The id of a comparison that the file gives no name: what was shown, and how often before."""
+        self.unnamed[(*shown, question)] += 1
+        digest = sha256(json.dumps(shown).encode()).hexdigest()[:10]
+        return f"{self.who}.u{digest}.{self.unnamed[(*shown, question)]}"
+
+    def _show(self, comparison_id: str, repetition: int, a: str, b: str, check: bool, where: str) -> None:
+        known = self.known.get(comparison_id)
+        if known is None:
+            self.position += 1
+            known = Comparison(
+                comparison_id, self.who, self.position, repetition, a, b, check, self.at, self.at
+            )
+            self.known[comparison_id] = known
+            self.new.append(known)
+        elif (known.mode_a, known.mode_b, known.check) != (a, b, check):
+            raise InputError(f"{where}: shows {a} and {b}, but elsewhere {known.mode_a} and {known.mode_b}")
+
+    def write(self) -> int:
+        """Add what the store lacks; returns how many responses that is."""
+        self.store.add_comparisons(self.new)
+        query = select(responses).join_from(responses, comparison_rows)
+        with self.store.transaction() as connection:
+            stored = {
+                (row["comparison"], row["question"]): row["answer"]
+                for row in every(connection, query.where(comparison_rows.c.participant == self.who))
+            }
+            for (comparison, question), answer in self.answers.items():
+                before = stored.get((comparison, question), answer)
+                if before != answer:
+                    where = f"{self.path}: comparison {comparison}, {question}"
+                    raise InputError(f"{where}: the store has {before}, not {answer}")
+            new = [
+                {"comparison": key[0], "question": key[1], "answer": answer, "answered_at": self.at}
+                for key, answer in self.answers.items()
+                if key not in stored
+            ]
+            insert_all(connection, responses, new)
+        return len(new)
+
+
+def import_stuck(path: Path, study: Study, toml_text: str, store: Store) -> int:
+    """Add stuck events that were found elsewhere to comparisons in a store.
+
+    The columns are described in ``data.stuck_csv``. Every comparison that the file speaks of becomes
+    two trials, one a mode, of unknown duration and with the source ``external``.
+
+    Returns
+    -------
+    int
+        Events that were added: 0 for a file that was imported before.
+
+    Raises
+    ------
+    InputError
+        If the file is wrong, or names comparisons that the store does not have.
+    """
+    found = read_stuck_csv(path, study)
+    with store.transaction():
+        stored = store.add_study(study, toml_text)
+        if _was_imported(store, stored, "stuck", found.file.sha256):
+            return 0
+        comparisons = {comparison.id: comparison for comparison in store.comparisons(stored)}
+        events: dict[str, _Events] = {}
+        if found.is_complete:
+            events = {c.id: _Events() for c in comparisons.values() if not c.check}
+        for said in found.statements():
+            comparison = _comparison_of(store, stored, said, comparisons)
+            if comparison is None:
+                name = repr(said.comparison[:60])
+                raise found.file.error(
+                    said.row, "comparison", f"{name} is not in the store: import its responses first"
+                )
+            if said.mode not in (comparison.mode_a, comparison.mode_b):
+                valid = f"{comparison.mode_a}, {comparison.mode_b}"
+                raise found.file.error(said.row, "mode", f"{said.mode!r} was not shown; valid: {valid}")
+            here = events.setdefault(comparison.id, _Events())
+            if said.event is not None:
+                (here.under_a if said.mode == comparison.mode_a else here.under_b).append(said.event)
+        for comparison_id, here in events.items():
+            _add_external_trials(store, comparisons[comparison_id], here)
+        added = sum(len(here.under_a) + len(here.under_b) for here in events.values())
+        _remember(store, stored, "stuck", found.file.sha256, added)
+        return added
+
+
+@dataclass(frozen=True)
+class _Events:
+    """What happened in one comparison."""
+
+    under_a: list[StuckEvent] = field(default_factory=list)
+    under_b: list[StuckEvent] = field(default_factory=list)
+
+
+def _comparison_of(
+    store: Store, study: StoredStudy, said: StuckStatement, comparisons: Mapping[str, Comparison]
+) -> Comparison | None:
+    if not said.participant and said.comparison in comparisons:
+        return comparisons[said.comparison]
+    who = _participant_id(store, study, said.participant or "pooled-human")
+    return comparisons.get(_comparison_id(who, said.comparison))
+
+
+def _add_external_trials(store: Store, comparison: Comparison, events: _Events) -> None:
+    """One trial a mode, unless the store has trials already and nothing is new."""
+    earlier = store.trials(comparison=comparison.id)
+    slots: tuple[Slot, ...] = get_args(Slot)
+    for slot in slots:
+        found = tuple(events.under_a if slot == "A" else events.under_b)
+        own = [trial for trial in earlier if trial.slot == slot]
+        if own and not found:
+            continue
+        number = max((trial.number for trial in own), default=0) + 1
+        store.add_trial(
+            Trial(
+                id=f"{comparison.id}.{slot}{number}",
+                comparison=comparison.id,
+                slot=slot,
+                number=number,
+                mode=comparison.mode_of(slot),
+                source="external",
+                outcome="stuck" if any(event.kind == "stuck" for event in found) else "completed",
+                started_at=comparison.started_at or store.clock(),
+                duration_s=math.nan,
+                seed=0,
+                events=found,
+            )
+        )
+
+
+def _participant_id(store: Store, study: StoredStudy, label: str) -> str:
+    """The id that a participant's name in a file gets: the name itself where it can be one."""
+    safe = label if _SAFE.fullmatch(label) else f"p{sha256(label.encode()).hexdigest()[:12]}"
+    with store.reading() as connection:
+        owner = first(connection, select(participants.c.study).where(participants.c.id == safe))
+    if owner is None or owner["study"] == study.id:
+        return safe
+    return f"{safe}-{study.sha256[:8]}"
+
+
+def _comparison_id(participant: str, name: str) -> str:
+    """The id that a comparison's name in a file gets; names count within a participant."""
+    if name.startswith(f"{participant}.") and _SAFE.fullmatch(name):
+        return name
+    safe = name if _SAFE.fullmatch(name) else f"x{sha256(name.encode()).hexdigest()[:12]}"
+    return f"{participant}.{safe}"
+
+
+def _was_imported(store: Store, study: StoredStudy, kind: str, digest: str) -> bool:
+    here = (imports.c.study == study.id) & (imports.c.kind == kind) & (imports.c.sha256 == digest)
+    with store.reading() as connection:
+        return bool(every(connection, select(imports.c.rows).where(here)))
+
+
+def _remember(store: Store, study: StoredStudy, kind: str, digest: str, added: int) -> None:
+    row = {"study": study.id, "kind": kind, "sha256": digest, "at": store.clock(), "rows": added}
+    with store.transaction() as connection:
+        connection.execute(imports.insert(), row)
+    store.log("elbowroom import", f"{kind} imported", {"study": study.label, "sha256": digest})
+
+
+def _refuse_to_mix_pooled(store: Store, study: StoredStudy, path: Path, has_participants: bool) -> None:
+    """Answers of unknown people and of known ones cannot be analysed together as either."""
+    query = select(participants.c.pooled).where(participants.c.study == study.id).distinct()
+    with store.reading() as connection:
+        present = {bool(row["pooled"]) for row in every(connection, query)}
+    if has_participants and True in present:
+        raise InputError(f"{path}: names participants, but the study in the store holds responses without")
+    if not has_participants and False in present:
+        raise InputError(
+            f"{path}: the column participant is missing, and the study in the store has participants"
+        )

@@ -1,0 +1,214 @@
+"""What the analysis reads of a store: responses, stuck comparisons and how far a study has come."""
+
+import hashlib
+from dataclasses import dataclass
+
+import pandas as pd
+from sqlalchemy import Select, func, join, select
+
+from data.errors import InputError
+from data.records import Source
+from data.responses import QuestionScale, ResponseTable, StuckTable
+from data.store.links import StoredLinks
+from data.store.rows import every
+from data.store.studies import StoredStudy
+from data.store.tables import comparisons, participants, responses, stuck_events, trials
+from data.study import Question
+
+RESPONSE_TYPES = {
+    "participant": "str",
+    "question": "str",
+    "mode_a": "str",
+    "mode_b": "str",
+    "response": "str",
+    "count": "int64",
+    "comparison": "str",
+    "repetition": "int64",
+    "source": "str",
+    "check": "bool",
+}
+"""Columns of a response table, in order, with their types."""
+
+STUCK_TYPES = {
+    "participant": "str",
+    "comparison": "str",
+    "mode": "str",
+    "stuck": "bool",
+    "exposure_s": "float64",
+}
+"""Columns of a stuck table, in order, with their types."""
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How far a study has come.
+
+    Attributes
+    ----------
+    joined, consented, finished : int
+        Participants.
+    planned, answered : int
+        Comparisons.
+    trials, stuck : int
+        Trials, and those that ended stuck.
+    """
+
+    joined: int
+    consented: int
+    finished: int
+    planned: int
+    answered: int
+    responses: int
+    trials: int
+    stuck: int
+
+
+class StoredEvidence(StoredLinks):
+    """A study's data as tables. People's and simulated participants' mix only when asked for."""
+
+    def responses_table(self, study: StoredStudy, include_simulated: bool = False) -> ResponseTable:
+        """All responses of a study.
+
+        Raises
+        ------
+        InputError
+            If there are none, or only simulated ones that were not asked for.
+        """
+        sources = self.sources(study, include_simulated)
+        query = (
+            select(
+                comparisons.c.participant,
+                responses.c.question,
+                comparisons.c.mode_a,
+                comparisons.c.mode_b,
+                responses.c.answer.label("response"),
+                responses.c.comparison,
+                comparisons.c.repetition,
+                participants.c.source,
+                comparisons.c.check,
+                participants.c.pooled,
+            )
+            .join_from(responses, comparisons)
+            .join(participants)
+            .where(participants.c.study == study.id, participants.c.source.in_(sources))
+            .order_by(participants.c.source, participants.c.number, participants.c.id, comparisons.c.position)
+        )
+        with self.reading() as connection:
+            rows = pd.DataFrame(every(connection, query))
+        if rows.empty:
+            raise InputError(f"{self.address.shown}: {study.label} has no responses yet")
+        order = {question.name: place for place, question in enumerate(study.study.questions)}
+        rows["count"] = 1
+        rows["asked"] = rows["question"].map(order)
+        places = rows.groupby("comparison", sort=False).ngroup()
+        rows = rows.assign(place=places).sort_values(["place", "asked"], kind="stable", ignore_index=True)
+        pooled = bool(rows["pooled"].any())
+        rows = rows[list(RESPONSE_TYPES)].astype(RESPONSE_TYPES)
+        asked = set(rows.loc[~rows["check"], "question"])
+        return ResponseTable(
+            rows=rows,
+            modes=study.study.mode_names,
+            questions=tuple(scale_of(q) for q in study.study.questions if q.name in asked),
+            has_participants=not pooled,
+            is_simulated=bool((rows["source"] == "simulated").any()),
+            sha256=hashlib.sha256(rows.to_csv(index=False, lineterminator="\n").encode()).hexdigest(),
+            title=study.study.title,
+        )
+
+    def stuck_table(self, study: StoredStudy, include_simulated: bool = False) -> StuckTable | None:
+        """Which comparisons had the robot stuck under which mode; None if no trials are known.
+
+        A comparison counts once any trial of it is known, under both its modes; attention checks
+        are left out. The exposure is NaN where a trial of unknown duration was imported.
+        """
+        sources = self.sources(study, include_simulated)
+        query = (
+            select(
+                comparisons.c.participant,
+                trials.c.comparison,
+                comparisons.c.mode_a,
+                comparisons.c.mode_b,
+                trials.c.mode,
+                (trials.c.outcome == "stuck").label("stuck"),
+                select(stuck_events.c.trial)
+                .where(stuck_events.c.trial == trials.c.id, stuck_events.c.kind == "stuck")
+                .exists()
+                .label("event"),
+                trials.c.duration_s,
+            )
+            .join_from(trials, comparisons)
+            .join(participants)
+            .where(
+                participants.c.study == study.id,
+                participants.c.source.in_(sources),
+                comparisons.c.check.is_(False),
+            )
+            .order_by(participants.c.source, participants.c.number, participants.c.id, comparisons.c.position)
+        )
+        with self.reading() as connection:
+            known = every(connection, query)
+        if not known:
+            return None
+        rows: dict[tuple[str, str], dict[str, object]] = {}
+        exposure: dict[tuple[str, str], float] = {}
+        for trial in known:
+            for mode in (trial["mode_a"], trial["mode_b"]):
+                key = (trial["comparison"], mode)
+                row = {
+                    "participant": trial["participant"],
+                    "comparison": key[0],
+                    "mode": mode,
+                    "stuck": False,
+                }
+                rows.setdefault(key, row)
+                exposure.setdefault(key, 0.0)
+            key = (trial["comparison"], trial["mode"])
+            rows[key]["stuck"] = rows[key]["stuck"] or bool(trial["stuck"] or trial["event"])
+            exposure[key] += trial["duration_s"]
+        table = pd.DataFrame([row | {"exposure_s": exposure[key]} for key, row in rows.items()])
+        return StuckTable(table.astype(STUCK_TYPES))
+
+    def counts(self, study: StoredStudy, include_simulated: bool = False) -> Counts:
+        """How far a study has come, among people or with simulated participants as well."""
+        sources: list[Source] = ["human", "simulated"] if include_simulated else ["human"]
+        mine = (participants.c.study == study.id) & participants.c.source.in_(sources)
+        of_people = select(func.count()).select_from(participants).where(mine)
+        of_comparisons = select(func.count()).select_from(join(comparisons, participants)).where(mine)
+        answered = join(join(responses, comparisons), participants)
+        of_responses = select(func.count()).select_from(answered).where(mine)
+        run = join(join(trials, comparisons), participants)
+        of_trials = select(func.count()).select_from(run).where(mine)
+        with self.reading() as connection:
+
+            def number(query: Select[int]) -> int:
+                return connection.execute(query).scalar_one()
+
+            return Counts(
+                joined=number(of_people),
+                consented=number(of_people.where(participants.c.consented_at.is_not(None))),
+                finished=number(of_people.where(participants.c.finished_at.is_not(None))),
+                planned=number(of_comparisons),
+                answered=number(of_comparisons.where(comparisons.c.answered_at.is_not(None))),
+                responses=number(of_responses),
+                trials=number(of_trials),
+                stuck=number(of_trials.where(trials.c.outcome == "stuck")),
+            )
+
+    def sources(self, study: StoredStudy, include_simulated: bool) -> list[Source]:
+        """The sources to read; never simulated ones unasked."""
+        if include_simulated:
+            return ["human", "simulated"]
+        query = select(participants.c.source).where(participants.c.study == study.id).distinct()
+        with self.reading() as connection:
+            present = set(connection.execute(query).scalars())
+        if present == {"simulated"}:
+            raise InputError(
+                f"{self.address.shown}: {study.label} has simulated participants only; "
+                "add --include-simulated to use them"
+            )
+        return ["human"]
+
+
+def scale_of(question: Question) -> QuestionScale:
+    """What the analysis must know of a study's question."""
+    return QuestionScale(question.name, question.short, question.wording, question.levels, question.polarity)
