@@ -1,0 +1,151 @@
+"""Responses counted per question, participant and ordered pair: the one input of every engine."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from data.answers import SCALES
+from data.errors import InputError, one_of
+from data.responses import QuestionScale, ResponseTable
+
+_ONE_FOR_ALL = ("",)
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How often each answer was given, by participant and ordered pair of modes.
+
+    Modes and participants are sorted by name and cells by (participant, A, B), so that neither the
+    order of the rows nor the way they were grouped can reach a sampler.
+
+    Attributes
+    ----------
+    modes : tuple of str
+        All modes of the response table, sorted; ``mode_a`` and ``mode_b`` index them.
+    participants : tuple of str
+        Sorted; one empty name if the participants are unknown or pooled.
+    participant, mode_a, mode_b : ndarray of int64, shape (cell,)
+    responses : ndarray of int64, shape (cell, level)
+        Counts in the order A much .. B much.
+    """
+
+    question: QuestionScale
+    modes: tuple[str, ...]
+    participants: tuple[str, ...]
+    participant: NDArray[np.int64]
+    mode_a: NDArray[np.int64]
+    mode_b: NDArray[np.int64]
+    responses: NDArray[np.int64]
+
+    @property
+    def n(self) -> int:
+        """Responses in all."""
+        return int(self.responses.sum())
+
+    @property
+    def levels(self) -> int:
+        """Answers on the scale: 2, 3 or 5."""
+        return int(self.responses.shape[1])
+
+    def pooled(self) -> "Counts":
+        """The same counts with all participants taken as one."""
+        return _gathered(
+            self.question,
+            self.modes,
+            _ONE_FOR_ALL,
+            np.zeros_like(self.participant),
+            self.mode_a,
+            self.mode_b,
+            self.responses,
+        )
+
+    def collapsed(self) -> "Counts":
+        """The same counts with ``A>>B`` taken as ``A>B`` and ``B>>A`` as ``B>A``."""
+        if self.levels < 5:
+            return self
+        merged = np.stack(
+            [self.responses[:, :2].sum(axis=1), self.responses[:, 2], self.responses[:, 3:].sum(axis=1)],
+            axis=1,
+        )
+        return Counts(
+            self.question, self.modes, self.participants, self.participant, self.mode_a, self.mode_b, merged
+        )
+
+    def wins(self) -> NDArray[np.int64]:
+        """How often each mode was preferred to each other, whatever the sides.
+
+        Returns
+        -------
+        ndarray of int64, shape (mode, mode)
+            Row over column.
+        """
+        half = self.levels // 2
+        table = np.zeros((len(self.modes), len(self.modes)), dtype=np.int64)
+        np.add.at(table, (self.mode_a, self.mode_b), self.responses[:, :half].sum(axis=1))
+        np.add.at(table, (self.mode_b, self.mode_a), self.responses[:, -half:].sum(axis=1))
+        return table
+
+    def ties(self) -> NDArray[np.int64]:
+        """How often each pair was found equal: ndarray of int64, shape (mode, mode), symmetric."""
+        table = np.zeros((len(self.modes), len(self.modes)), dtype=np.int64)
+        if self.levels > 2:
+            middle = self.responses[:, self.levels // 2]
+            np.add.at(table, (self.mode_a, self.mode_b), middle)
+            np.add.at(table, (self.mode_b, self.mode_a), middle)
+        return table
+
+
+def count_responses(table: ResponseTable, question: QuestionScale) -> Counts:
+    """Count the responses to one question; attention checks stay out.
+
+    Raises
+    ------
+    InputError
+        If an answer is not on the question's scale, a mode is not one of the table's, or a mode
+        is compared with itself in a row that is no check.
+    """
+    rows = table.rows[(table.rows["question"] == question.name) & ~table.rows["check"].astype(bool)]
+    modes = tuple(sorted(table.modes))
+    scale = SCALES[question.levels]
+    level = _codes(rows["response"], scale, f"question {question.name}: response")
+    mode_a = _codes(rows["mode_a"], modes, f"question {question.name}: mode_a")
+    mode_b = _codes(rows["mode_b"], modes, f"question {question.name}: mode_b")
+    if np.any(mode_a == mode_b):
+        twice = modes[int(mode_a[mode_a == mode_b][0])]
+        raise InputError(
+            f"question {question.name}: {twice!r} is compared with itself in a row that is no check"
+        )
+    names = rows["participant"].astype(str).to_numpy()
+    participants, participant = np.unique(names, return_inverse=True)
+    one_hot = np.zeros((len(rows), len(scale)), dtype=np.int64)
+    one_hot[np.arange(len(rows)), level] = rows["count"].to_numpy(dtype=np.int64)
+    known = tuple(str(name) for name in participants) if table.has_participants else _ONE_FOR_ALL
+    if not table.has_participants:
+        participant = np.zeros(len(rows), dtype=np.int64)
+    return _gathered(question, modes, known, participant.astype(np.int64), mode_a, mode_b, one_hot)
+
+
+def _codes(values: pd.Series, valid: tuple[str, ...], what: str) -> NDArray[np.int64]:
+    codes = pd.Index(valid).get_indexer(pd.Index(values))
+    if np.any(codes < 0):
+        raise one_of(what, values.iloc[int(np.argmax(codes < 0))], valid)
+    return codes.astype(np.int64)
+
+
+def _gathered(
+    question: QuestionScale,
+    modes: tuple[str, ...],
+    participants: tuple[str, ...],
+    participant: NDArray[np.int64],
+    mode_a: NDArray[np.int64],
+    mode_b: NDArray[np.int64],
+    responses: NDArray[np.int64],
+) -> Counts:
+    """Cells of one key added up, in the order of their keys."""
+    n = len(modes)
+    keys, cell = np.unique((participant * n + mode_a) * n + mode_b, return_inverse=True)
+    summed = np.zeros((len(keys), responses.shape[1]), dtype=np.int64)
+    np.add.at(summed, cell, responses)
+    return Counts(question, modes, participants, keys // (n * n), keys // n % n, keys % n, summed)

@@ -1,0 +1,143 @@
+"""Has the sampling converged, and how many independent draws is it worth? Vectorised over quantities.
+
+References
+----------
+Vehtari, Gelman, Simpson, Carpenter, Buerkner 2021, "Rank-normalization, folding, and localization: an
+improved R-hat for assessing convergence of MCMC" (all formulas and both limits); Geyer 1992, "Practical
+Markov chain Monte Carlo", section 3.3 (initial monotone sequence).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, next_fast_len, rfft
+from scipy.special import ndtri
+
+RHAT_BELOW = 1.01
+"""Gate on R-hat (Vehtari et al. 2021)."""
+ESS_ABOVE = 400.0
+"""Gate on bulk and tail ESS: 100 for each of four chains (Vehtari et al. 2021)."""
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """Diagnostics by quantity: ``rhat``, ``ess_bulk`` and ``ess_tail``, each of shape (quantity,)."""
+
+    rhat: NDArray[np.float64]
+    ess_bulk: NDArray[np.float64]
+    ess_tail: NDArray[np.float64]
+
+    @property
+    def rhat_max(self) -> float:
+        """Worst R-hat."""
+        return float(self.rhat.max())
+
+    @property
+    def ess_min(self) -> float:
+        """Smallest bulk or tail ESS."""
+        return float(min(self.ess_bulk.min(), self.ess_tail.min()))
+
+    @property
+    def passed(self) -> bool:
+        """True if every quantity passes the gate; nan never does."""
+        return self.rhat_max < RHAT_BELOW and self.ess_min > ESS_ABOVE
+
+
+def convergence(draws: NDArray[np.float64]) -> Convergence:
+    """Rank-normalised split R-hat, bulk ESS and tail ESS of many quantities at once.
+
+    Parameters
+    ----------
+    draws : ndarray, shape (quantity, chain, draw)
+        At least four draws a chain.
+    """
+    halves = _split(draws)
+    z = _normal_scores(halves)
+    folded = np.abs(halves - np.median(halves, axis=(1, 2), keepdims=True))
+    low, high = np.quantile(draws, [0.05, 0.95], axis=(1, 2))
+    tails = [_ess(_split((draws <= q[:, None, None]).astype(np.float64))) for q in (low, high)]
+    return Convergence(
+        np.maximum(_rhat(z), _rhat(_normal_scores(folded))),
+        _ess(z),
+        np.minimum(*tails),
+    )
+
+
+def hdi(draws: NDArray[np.float64], probability: float) -> NDArray[np.float64]:
+    """The shortest interval that holds so much of the draws.
+
+    Parameters
+    ----------
+    draws : ndarray, shape (draw, ...)
+
+    Returns
+    -------
+    ndarray, shape (2, ...)
+        Lower and upper ends.
+    """
+    ordered = np.sort(draws, axis=0)
+    inside = int(np.floor(probability * len(draws)))
+    width = ordered[inside:] - ordered[: len(draws) - inside]
+    first = np.expand_dims(width.argmin(axis=0), 0)
+    return np.concatenate(
+        [np.take_along_axis(ordered, first, axis=0), np.take_along_axis(ordered, first + inside, axis=0)]
+    )
+
+
+def _split(draws: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each chain as two: drift within a chain then shows as disagreement between chains."""
+    half = draws.shape[2] // 2
+    return np.concatenate([draws[..., :half], draws[..., -half:]], axis=1)
+
+
+def _normal_scores(draws: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Average ranks over all chains, as normal quantiles (Blom's offset 3/8)."""
+    flat = draws.reshape(len(draws), -1)
+    n = flat.shape[1]
+    order = np.argsort(flat, axis=1, kind="stable")
+    ordered = np.take_along_axis(flat, order, axis=1)
+    place = np.broadcast_to(np.arange(n), flat.shape)
+    starts = np.diff(ordered, axis=1, prepend=-np.inf) != 0
+    ends = np.concatenate([starts[:, 1:], np.ones((len(flat), 1), dtype=bool)], axis=1)
+    first = np.maximum.accumulate(np.where(starts, place, 0), axis=1)
+    last = np.minimum.accumulate(np.where(ends, place, n)[:, ::-1], axis=1)[:, ::-1]
+    rank = np.empty_like(flat)
+    np.put_along_axis(rank, order, (first + last) / 2 + 1, axis=1)
+    return ndtri((rank - 3 / 8) / (n + 1 / 4)).reshape(draws.shape)
+
+
+def _rhat(chains: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Square root of the pooled over the mean within-chain variance."""
+    n = chains.shape[2]
+    between = n * chains.mean(axis=2).var(axis=1, ddof=1)
+    within = chains.var(axis=2, ddof=1).mean(axis=1)
+    return np.sqrt((between / within + n - 1) / n)
+
+
+def _ess(chains: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Draws over their integrated autocorrelation time."""
+    m, n = chains.shape[1:]
+    centred = chains - chains.mean(axis=2, keepdims=True)
+    spectrum = rfft(centred, n=next_fast_len(2 * n, real=True), axis=2)
+    power = spectrum.real**2 + spectrum.imag**2
+    covariance = irfft(power, n=next_fast_len(2 * n, real=True), axis=2)[..., :n].mean(axis=1) / n
+    within = covariance[:, :1] * n / (n - 1)
+    total = within * (n - 1) / n + chains.mean(axis=2).var(axis=1, ddof=1)[:, None]
+    is_constant = np.ptp(chains, axis=(1, 2)) < np.finfo(float).resolution
+    total[is_constant] = 1.0
+    rho = 1.0 - (within - covariance) / total
+    rho[:, 0] = 1.0
+
+    # Sums of neighbouring lags are positive and fall in a reversible chain; past the first that is
+    # not positive there is only noise (Geyer 1992).
+    n_pairs = max((n - 1) // 2, 1)
+    even = rho[:, 0 : 2 * n_pairs : 2]
+    pairs = even + rho[:, 1 : 2 * n_pairs : 2]
+    stop = np.where((pairs <= 0).any(axis=1), (pairs <= 0).argmax(axis=1), n_pairs - 1)
+    falling = np.minimum.accumulate(pairs, axis=1)
+    kept = np.where(np.arange(n_pairs) < stop[:, None], falling, 0.0).sum(axis=1)
+    at_stop = (np.arange(len(stop)), stop)
+    last = np.where(pairs[at_stop] >= 0, even[at_stop], np.maximum(even[at_stop], 0.0))
+    time = np.maximum(-1.0 + 2.0 * kept + last, 1 / np.log10(m * n))
+    return np.where(is_constant, float(m * n), m * n / time)

@@ -1,0 +1,61 @@
+"""The default engine: a compiled density per question, sampled by NUTS."""
+
+import zlib
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from analysis.engines import nuts
+from analysis.engines.density import packed
+from analysis.model import Problem
+from analysis.results import Draws, FitSettings
+from analysis.softmax import worth_of
+from analysis.zero_sum import zero_sum_basis
+
+
+def sample(
+    problems: Sequence[Problem], settings: FitSettings, done: Callable[[int], None] = lambda k: None
+) -> list[Draws]:
+    """Draws of every question, in the order of the problems; ``done(k)`` follows each.
+
+    A question's stream of random numbers depends on the seed and on its own name alone, so that other
+    questions cannot change its draws.
+    """
+    results = []
+    for k, problem in enumerate(problems):
+        chains = nuts.sample(
+            packed(problem),
+            problem.n_dim,
+            problem.n_global,
+            seed=question_seed(settings.seed, problem.counts.question.name),
+            draws=settings.draws,
+            tune=settings.tune,
+            chains=settings.chains,
+            target_accept=settings.target_accept,
+        )
+        results.append(_named(problem, chains))
+        done(k + 1)
+    return results
+
+
+def question_seed(seed: int, question: str) -> int:
+    """A seed of its own for each question."""
+    return int(np.random.SeedSequence([seed, zlib.crc32(question.encode())]).generate_state(1, np.uint64)[0])
+
+
+def _named(problem: Problem, chains: nuts.Chains) -> Draws:
+    """The sampler's coordinates as the model's quantities (the order is that of ``density``)."""
+    model, n_modes = problem.model, len(problem.counts.modes)
+    ability = chains.position[..., : n_modes - 1] @ zero_sum_basis(n_modes).T
+    rest = iter(np.moveaxis(chains.position[..., n_modes - 1 :], -1, 0))
+    parameters = {}
+    cut = 0.0
+    for name in model.parameter_names:
+        value = next(rest)
+        if name.startswith("cut_"):
+            cut = cut + np.exp(value)
+            value = cut
+        elif name == "subject_sd":
+            value = np.exp(value)
+        parameters[name] = np.ascontiguousarray(value)
+    return Draws(ability, worth_of(ability), parameters, chains.diverging)

@@ -1,0 +1,149 @@
+"""Can these answers rank these modes? Checked before anything is sampled."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+from analysis.counts import Counts
+
+FEW_COMPARISONS = 10
+"""Fewer comparisons of a mode than this bring a warning. Untuned: a day's pilot, not a study."""
+_LISTED = 6
+"""Names or pairs that a sentence lists before it counts the rest."""
+
+Pair = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Examination:
+    """What the answers allow.
+
+    Attributes
+    ----------
+    refusal : str
+        Why there can be no ranking, as a sentence; empty if there can be one.
+    missing_pairs : tuple of (str, str)
+        Pairs that were never compared and would connect two groups.
+    warnings : tuple of str
+        What the reader of the ranking must know, a sentence each.
+    """
+
+    refusal: str
+    missing_pairs: tuple[Pair, ...]
+    warnings: tuple[str, ...]
+
+
+def examine(
+    counts: Counts, modes: tuple[str, ...], *, has_participants: bool, side_effect: bool
+) -> Examination:
+    """Look for what stands against a ranking.
+
+    Parameters
+    ----------
+    modes : tuple of str
+        The order in which modes are named.
+    side_effect : bool
+        True if the model is to have a side effect.
+    """
+    place = [counts.modes.index(mode) for mode in modes]
+    wins, ties = counts.wins()[np.ix_(place, place)], counts.ties()[np.ix_(place, place)]
+    compared = wins + wins.T + ties
+    groups = _groups(modes, compared)
+    if len(groups) > 1:
+        missing = _between(groups, modes)
+        return Examination(_refusal(counts, groups, missing), missing, ())
+    warnings = []
+    if has_participants and len(counts.participants) == 1:
+        warnings.append("All answers are one participant's: the ranking is that person's, not people's.")
+    if counts.levels > 2 and ties.sum() == compared.sum():
+        warnings.append("Every answer is a tie: the modes can't be told apart.")
+    else:
+        warnings += _separation(modes, wins, ties)
+    few = [mode for mode, n in zip(modes, compared.sum(axis=1), strict=True) if n < FEW_COMPARISONS]
+    if few:
+        warnings.append(
+            f"Few data: {_listed(few)} {_are(few)} in fewer than {FEW_COMPARISONS} comparisons; "
+            "the ranking rests on the prior as much as on the answers."
+        )
+    if side_effect:
+        warnings += _sides(counts)
+    return Examination("", (), tuple(warnings))
+
+
+def _groups(modes: tuple[str, ...], compared: NDArray[np.int64]) -> list[list[str]]:
+    """Modes that comparisons connect, directly or through others."""
+    n, label = connected_components(csr_array(compared), directed=False)
+    return [[mode for mode, group in zip(modes, label, strict=True) if group == g] for g in range(n)]
+
+
+def _between(groups: list[list[str]], modes: tuple[str, ...]) -> tuple[Pair, ...]:
+    group_of = {mode: g for g, group in enumerate(groups) for mode in group}
+    return tuple((a, b) for i, a in enumerate(modes) for b in modes[i + 1 :] if group_of[a] != group_of[b])
+
+
+def _refusal(counts: Counts, groups: list[list[str]], missing: tuple[Pair, ...]) -> str:
+    if counts.n == 0:
+        return "There are no answers to this question."
+    needed = f"Missing: {_listed([f'{a} against {b}' for a, b in missing], 'or')}"
+    unseen = [group[0] for group in groups if len(group) == 1]
+    if len(unseen) == len(groups) - 1:
+        was = "was" if len(unseen) == 1 else "were"
+        return f"{_listed(unseen)} {was} never compared with another mode. {needed}."
+    parts = "; ".join(_listed(group) for group in groups)
+    return f"The modes fall into {len(groups)} groups never compared with each other: {parts}. {needed}."
+
+
+def _separation(modes: tuple[str, ...], wins: NDArray[np.int64], ties: NDArray[np.int64]) -> list[str]:
+    """Groups of modes that never lost or tied outside: there the likelihood has no maximum.
+
+    References
+    ----------
+    Ford 1957: the estimate exists if and only if every mode can be reached from every other along wins.
+    """
+    n, label = connected_components(csr_array(wins + ties), directed=True, connection="strong")
+    said = []
+    for g in range(n if n > 1 else 0):
+        inside = label == g
+        group = [mode for mode, is_in in zip(modes, inside, strict=True) if is_in]
+        won, lost = wins[np.ix_(inside, ~inside)].sum(), wins[np.ix_(~inside, inside)].sum()
+        drawn = ties[np.ix_(inside, ~inside)].sum()
+        if drawn or (won and lost):
+            continue
+        said.append(
+            f"{_listed(group)} {'won' if won else 'lost'} every comparison with the other modes: "
+            "how far they are apart rests on the prior."
+        )
+    return said
+
+
+def _sides(counts: Counts) -> list[str]:
+    """Warn where the side effect cannot be told from the modes."""
+    seen = {(int(a), int(b)) for a, b in zip(counts.mode_a, counts.mode_b, strict=True)}
+    if any((b, a) in seen for a, b in seen):
+        return []
+    design = np.zeros((len(seen), len(counts.modes) + 1))
+    for row, (a, b) in enumerate(sorted(seen)):
+        design[row, [a, b, -1]] = 1.0, -1.0, 1.0
+    if np.linalg.matrix_rank(design) < len(counts.modes):
+        return [
+            "No pair was shown with its sides exchanged and the side effect can't be told from the modes: "
+            "it rests on its prior. A model without side effect may be meant."
+        ]
+    return [
+        "No pair was shown with its sides exchanged: the side effect is told from the modes only by how "
+        "pairs fit together. If A and B mean nothing here, a model without side effect is meant."
+    ]
+
+
+def _listed(names: list[str], last: str = "and") -> str:
+    shown = names[:_LISTED]
+    if len(names) > _LISTED:
+        return f"{', '.join(shown)} {last} {len(names) - _LISTED} more"
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} {last} {shown[-1]}"
+
+
+def _are(names: list[str]) -> str:
+    return "is" if len(names) == 1 else "are"

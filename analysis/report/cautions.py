@@ -1,0 +1,145 @@
+"""What a reader must know before quoting the report: the list "Before you quote this"."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from analysis.figures.labels import isolated, one_line, percent
+from analysis.report.findings import Finding, listed
+from analysis.results import Fit, QuestionFit
+from data.responses import ResponseTable
+from data.study import Study
+
+FEW_PARTICIPANTS = 20
+"""Below this the report calls participants few. Untuned: simulated studies of this kind with twenty
+people find the true first place surely in fewer than half of all cases."""
+_DIVIDED = 0.3
+_MOST_OF_A_KIND = 3
+
+
+def cautions(
+    table: ResponseTable, fit: Fit, found: Sequence[Finding], study: Study | None, checks: int
+) -> tuple[str, ...]:
+    """Plain sentences, the gravest first."""
+    said = [
+        *_about_the_source(table, study),
+        *_about_the_number(fit),
+        *_about_the_questions(fit),
+        *fit.warnings,
+        *_about_people(found),
+        *_about_sides(fit),
+        *_about_checks(checks),
+        *_about_convergence(fit),
+    ]
+    return tuple(dict.fromkeys(said))
+
+
+def _about_the_source(table: ResponseTable, study: Study | None) -> list[str]:
+    if table.is_simulated:
+        sources = table.rows.groupby("source")["count"].sum()
+        simulated, total = int(sources.get("simulated", 0)), int(sources.sum())
+        if simulated < total:
+            return [
+                f"{simulated:,} of {total:,} answers were made by simulated participants. "
+                "They are mixed with answers of people here: don't quote this as a result about people."
+            ]
+        return [
+            "All answers were made by simulated participants. They show what the method does, not what "
+            "people prefer."
+        ]
+    if study is not None and study.protocol.trial_source == "observed":
+        return ["Participants watched a simulated robot. A real arm in the hand may be judged differently."]
+    return []
+
+
+def _about_the_number(fit: Fit) -> list[str]:
+    people = max((q.n_participants for q in fit.questions), default=0)
+    if 1 < people < FEW_PARTICIPANTS:
+        return [f"{people} participants are few: more could change the order."]
+    return []
+
+
+def _about_the_questions(fit: Fit) -> list[str]:
+    """Warnings of single questions, each said once with the questions it holds for."""
+    by_text: dict[str, list[str]] = {}
+    for question in fit.questions:
+        for warning in question.warnings:
+            by_text.setdefault(one_line(warning), []).append(isolated(question.question.name))
+    inferred = [q for q in fit.questions if q.question.levels_inferred]
+    said = []
+    if inferred:
+        levels = sorted({q.question.levels for q in inferred})
+        counted = listed([str(k) for k in levels])
+        said.append(
+            f"No study file was given, so the levels of the scale ({counted}) were inferred from the "
+            "answers: a level that nobody chose is not known."
+        )
+    many = len(fit.questions) > 1
+    for text, names in by_text.items():
+        said.append(f"{listed(names)}: {text}" if many and len(names) < len(fit.questions) else text)
+    return said
+
+
+def _about_people(found: Sequence[Finding]) -> list[str]:
+    """Where many people are expected to put the rival above the group's first."""
+    divided = []
+    for f in found:
+        share = _disagreeing(f)
+        if share is not None and share >= _DIVIDED:
+            divided.append((share, f))
+    divided.sort(key=lambda pair: -pair[0])
+    return [
+        f"People differ: for “{f.label}” about {percent(share)} % would put {isolated(f.rival)} "
+        f"above {isolated(f.first)}, although the group does not."
+        for share, f in divided[:_MOST_OF_A_KIND]
+        if f.reading == "likely"
+    ]
+
+
+def _disagreeing(found: Finding) -> float | None:
+    """Posterior mean share of people whose own ability of the rival exceeds that of the first mode."""
+    question = found.question
+    if question.draws is None or not question.ranked or "subject_sd" not in question.draws.parameters:
+        return None
+    from scipy.special import ndtr
+
+    names = [m.mode for m in question.modes]
+    ability = question.draws.ability.reshape(-1, len(names))
+    difference = ability[:, names.index(found.first)] - ability[:, names.index(found.rival)]
+    tau = question.draws.parameters["subject_sd"].reshape(-1)
+    return float(np.mean(ndtr(-difference / (np.sqrt(2) * np.maximum(tau, 1e-12)))))
+
+
+def _about_sides(fit: Fit) -> list[str]:
+    said = []
+    for question in fit.questions:
+        for p in question.parameters:
+            if p.name == "side_effect" and (p.hdi_low > 0 or p.hdi_high < 0):
+                said.append((question, p.mean))
+    if not said:
+        return []
+    names = listed([isolated(q.question.name) for q, _ in said[:6]])
+    side = "A" if all(m > 0 for _, m in said) else "B" if all(m < 0 for _, m in said) else "one side"
+    return [f"{names}: whatever was shown as {side} was favoured; the ranking corrects for it."]
+
+
+def _about_checks(checks: int) -> list[str]:
+    return [f"{checks:,} answers to attention checks are left out of the model."] if checks else []
+
+
+def _about_convergence(fit: Fit) -> list[str]:
+    if np.isnan(fit.rhat_max):
+        return []
+    figures = f"R-hat {fit.rhat_max:.2f}, ESS {fit.ess_min:,.0f}, {_divergences(fit)}"
+    if fit.converged:
+        return [f"The sampler converged: {figures}."]
+    failed = [isolated(q.question.name) for q in fit.questions if _sampled(q) and not q.ranked]
+    return [f"The sampler did not converge{' in ' + listed(failed) if failed else ''}: {figures}."]
+
+
+def _divergences(fit: Fit) -> str:
+    return "no divergences" if fit.divergences == 0 else f"{fit.divergences:,} divergent draws"
+
+
+def _sampled(question: QuestionFit) -> bool:
+    return question.draws is not None

@@ -1,0 +1,208 @@
+"""What the answers settle, question by question, and the paragraph that says it in plain words."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from analysis.figures.labels import LIKELY, isolated, percent_in_words
+from analysis.results import Fit, QuestionFit
+from analysis.stuck import StuckRate
+
+_MOST_NAMED = 6
+_MOST_STUCK_NAMED = 3
+
+Reading = Literal["likely", "open", "not ranked"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The first place on one question.
+
+    Attributes
+    ----------
+    first : str
+        The mode most often first in the posterior; empty if the question is not ranked.
+    chance : float
+        Its chance to rank first.
+    rival : str
+        The mode it is least surely above.
+    above_rival : float
+    ties : float
+        Share of ties among all answers to the question; nan if its scale has none.
+    label : str
+        What the question is called in a sentence: its short form, unless others share it.
+    """
+
+    question: QuestionFit
+    first: str
+    chance: float
+    rival: str
+    above_rival: float
+    ties: float
+    reading: Reading
+    label: str
+
+
+@dataclass(frozen=True)
+class Phrase:
+    """A run of words; strong ones are printed semibold."""
+
+    text: str
+    strong: bool = False
+
+
+def findings(fit: Fit) -> tuple[Finding, ...]:
+    """One finding a question, in the order of the fit."""
+    shorts = [q.question.short for q in fit.questions]
+    labels = [
+        isolated(
+            q.question.short if q.question.short and shorts.count(q.question.short) == 1 else q.question.name
+        )
+        for q in fit.questions
+    ]
+    return tuple(_finding(question, label) for question, label in zip(fit.questions, labels, strict=True))
+
+
+def chances_above(question: QuestionFit, mode: str) -> dict[str, float]:
+    """Posterior probability that one mode ranks above each of the others."""
+    ahead = {p.mode_j: p.p_i_above_j for p in question.pairs if p.mode_i == mode}
+    behind = {p.mode_i: 1 - p.p_i_above_j for p in question.pairs if p.mode_j == mode}
+    return ahead | behind
+
+
+def _finding(question: QuestionFit, label: str) -> Finding:
+    answers = sum(p.n for p in question.pairs)
+    tied = sum(p.ties for p in question.pairs)
+    ties = tied / answers if answers and question.question.levels > 2 else float("nan")
+    if not question.ranked:
+        return Finding(question, "", float("nan"), "", float("nan"), ties, "not ranked", label)
+    first = max(question.modes, key=lambda m: m.p_best)
+    above = chances_above(question, first.mode)
+    rival = min(above, key=lambda other: above[other])
+    reading: Reading = "likely" if first.p_best >= LIKELY else "open"
+    return Finding(question, first.mode, first.p_best, rival, above[rival], ties, reading, label)
+
+
+def lead(found: Sequence[Finding], stuck: Sequence[StuckRate], simulated: bool) -> tuple[Phrase, ...]:
+    """The first paragraph of the report, careful and plain."""
+    likely = [f for f in found if f.reading == "likely"]
+    still_open = [f for f in found if f.reading == "open"]
+    phrases: list[Phrase] = []
+    if simulated:
+        phrases.append(Phrase("These answers were simulated, so they say nothing about people. "))
+    if len(found) == 1:
+        phrases += _one_question(found[0])
+    elif likely or still_open:
+        phrases += [
+            Phrase(_opening(found, likely) + " "),
+            *_likely_ones(likely),
+            *_open_ones(still_open, likely),
+        ]
+    if len(found) > 1:
+        phrases += _unranked_ones([f for f in found if f.reading == "not ranked"], len(found))
+    if stuck:
+        phrases.append(Phrase(_stuck_sentence(stuck)))
+    return tuple(phrases)
+
+
+def listed(parts: Sequence[str]) -> str:
+    """``a, b and c``."""
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+
+
+def _one_question(found: Finding) -> list[Phrase]:
+    if found.reading == "not ranked":
+        return [Phrase("The answers cannot rank the modes. ", True), Phrase(f"{found.question.reason} ")]
+    first, rival = isolated(found.first), isolated(found.rival)
+    above = percent_in_words(found.above_rival)
+    if found.reading == "likely":
+        return [
+            Phrase(f"{first} likely ranks first for “{found.label}”", True),
+            Phrase(f" (a chance of {percent_in_words(found.chance)}). Its closest rival is {rival}: "),
+            Phrase(f"the chance that {first} is really above it is {above}. "),
+        ]
+    return [
+        Phrase(f"The answers don't settle which mode ranks first for “{found.label}”. ", True),
+        Phrase(
+            f"{first} comes first most often (a chance of {percent_in_words(found.chance)}), and is above "
+            f"{rival} "
+        ),
+        Phrase(f"with a chance of {above}: more answers could change the order. "),
+    ]
+
+
+def _opening(found: Sequence[Finding], likely: Sequence[Finding]) -> str:
+    winners = {f.first for f in likely}
+    if not likely:
+        return "The answers don't settle a first place on any question yet."
+    if len(winners) > 1:
+        return "No mode comes first on every question."
+    if len(likely) == len(found):
+        return "One mode is likely first on every question."
+    return "Some questions have a likely first place, others are open."
+
+
+def _likely_ones(likely: Sequence[Finding]) -> list[Phrase]:
+    phrases: list[Phrase] = []
+    by_mode: dict[str, list[Finding]] = {}
+    for f in sorted(likely, key=lambda f: -f.chance)[:_MOST_NAMED]:
+        by_mode.setdefault(f.first, []).append(f)
+    for k, (mode, group) in enumerate(by_mode.items()):
+        if k:
+            phrases.append(Phrase("; "))
+        verb = "likely ranks first for " if k == 0 else "for "
+        for g, f in enumerate(group):
+            joint = "" if g == 0 else " and " if g == len(group) - 1 else ", "
+            if joint:
+                phrases.append(Phrase(joint))
+            name = f"{isolated(mode)} {verb}" if g == 0 else ""
+            phrases.append(Phrase(f"{name}“{f.label}”", True))
+            phrases.append(Phrase(f" ({percent_in_words(f.chance)}{_not_good(f)})"))
+    if len(likely) > _MOST_NAMED:
+        phrases.append(Phrase(f"; {len(likely) - _MOST_NAMED} more are in the table below"))
+    if likely:
+        phrases.append(Phrase(". "))
+    return phrases
+
+
+def _not_good(found: Finding) -> str:
+    return ", which isn't better" if found.question.question.polarity == "lower_is_better" else ""
+
+
+def _open_ones(still_open: Sequence[Finding], likely: Sequence[Finding]) -> list[Phrase]:
+    if not still_open:
+        return []
+    if len(still_open) > _MOST_NAMED:
+        where = f"On {len(still_open)} questions"
+    else:
+        where = f"For {listed([f'“{f.label}”' for f in still_open])}"
+    still = "the first place is open" if likely else "more than one mode could be first"
+    return [Phrase(f"{where} {still}: more people could change it. ")]
+
+
+def _unranked_ones(unranked: Sequence[Finding], total: int) -> list[Phrase]:
+    if not unranked:
+        return []
+    if len(unranked) == total:
+        return [
+            Phrase("The answers cannot rank the modes on any question. ", True),
+            Phrase(f"{unranked[0].question.reason} "),
+        ]
+    names = listed([f"“{f.label}”" for f in unranked[:_MOST_NAMED]])
+    more = f" and {len(unranked) - _MOST_NAMED} more" if len(unranked) > _MOST_NAMED else ""
+    return [Phrase(f"There is no ranking for {names}{more}; the reason stands below. ")]
+
+
+def _stuck_sentence(stuck: Sequence[StuckRate]) -> str:
+    some = sorted((r for r in stuck if r.stuck), key=lambda r: -r.stuck / r.comparisons)
+    none = [r for r in stuck if not r.stuck]
+    if not some:
+        return "The robot never got stuck."
+    said = [f"in {r.stuck} of {r.comparisons} with {isolated(r.mode)}" for r in some[:_MOST_STUCK_NAMED]]
+    said[0] = said[0].replace(" with ", " comparisons with ", 1)
+    if len(some) > _MOST_STUCK_NAMED:
+        said.append(f"in fewer with {len(some) - _MOST_STUCK_NAMED} more modes")
+    if none:
+        names = [isolated(r.mode) for r in none]
+        said.append(f"in none with {listed(names) if len(names) <= _MOST_NAMED else f'{len(names)} modes'}")
+    return f"The robot got stuck {listed(said)}."

@@ -1,0 +1,112 @@
+"""The CSV files of a report folder: full precision, and the same bytes for the same results."""
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from analysis.results import Fit, Quantity, QuestionFit
+from analysis.stuck import StuckRate
+
+_FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
+Cell = str | int | float
+
+
+def neutralised(name: str) -> str:
+    """A name that no spreadsheet runs as a formula: a leading ``= + - @`` gets a ``'`` before it."""
+    return f"'{name}" if name.startswith(_FORMULA_STARTS) else name
+
+
+def neutralised_names(fit: Fit) -> tuple[str, ...]:
+    """The names of modes and questions that the CSV files write differently."""
+    names = [*fit.modes, *(q.question.name for q in fit.questions)]
+    return tuple(name for name in dict.fromkeys(names) if neutralised(name) != name)
+
+
+def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    """Write rows as UTF-8 CSV, quoted as in RFC 4180; floats as `repr`, nan as an empty cell."""
+    lines = [",".join(header), *(",".join(_cell(value) for value in row) for row in rows)]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="")
+
+
+def _cell(value: Cell) -> str:
+    if isinstance(value, float):
+        return "" if math.isnan(value) else repr(float(value))
+    if isinstance(value, int):
+        return str(value)
+    text = neutralised(value)
+    if any(c in text for c in ',"\r\n') or text != text.strip():
+        return '"' + text.replace('"', '""') + '"'
+    return text
+
+
+def write_tables(
+    fit: Fit, stuck: Sequence[StuckRate], more: Sequence[tuple[str, Quantity]], folder: Path
+) -> None:
+    """Write ``worth.csv``, ``pairwise.csv``, ``parameters.csv`` and, if rates are known, ``stuck.csv``.
+
+    A question that is not ranked has no row in ``worth.csv``, and no chances in ``pairwise.csv``.
+    Pairs stand in both directions. ``more`` are further rows of ``parameters.csv``, each with what stands
+    for its question.
+    """
+    write_csv(
+        folder / "worth.csv",
+        (
+            "question",
+            "mode",
+            "ability_mean",
+            "ability_sd",
+            "worth_mean",
+            "worth_sd",
+            "worth_hdi_low",
+            "worth_hdi_high",
+            "p_best",
+            "rank_mean",
+        ),
+        (
+            (
+                q.question.name,
+                m.mode,
+                m.ability_mean,
+                m.ability_sd,
+                m.worth_mean,
+                m.worth_sd,
+                m.worth_hdi_low,
+                m.worth_hdi_high,
+                m.p_best,
+                m.rank_mean,
+            )
+            for q in fit.questions
+            if q.ranked
+            for m in q.modes
+        ),
+    )
+    write_csv(
+        folder / "pairwise.csv",
+        ("question", "mode_i", "mode_j", "p_i_above_j", "n", "wins_i", "ties", "wins_j"),
+        (row for q in fit.questions for row in _both_ways(fit, q)),
+    )
+    write_csv(
+        folder / "parameters.csv",
+        ("question", "name", "mean", "sd", "hdi_low", "hdi_high"),
+        (
+            (question, p.name, p.mean, p.sd, p.hdi_low, p.hdi_high)
+            for question, p in [*((q.question.name, p) for q in fit.questions for p in q.parameters), *more]
+        ),
+    )
+    if stuck:
+        write_csv(
+            folder / "stuck.csv",
+            ("mode", "comparisons", "stuck", "rate_mean", "rate_hdi_low", "rate_hdi_high"),
+            ((r.mode, r.comparisons, r.stuck, r.rate_mean, r.rate_hdi_low, r.rate_hdi_high) for r in stuck),
+        )
+
+
+def _both_ways(fit: Fit, question: QuestionFit) -> list[Sequence[Cell]]:
+    """Every ordered pair, in the order of the modes."""
+    name, place = question.question.name, {mode: k for k, mode in enumerate(fit.modes)}
+    rows: dict[tuple[int, int], Sequence[Cell]] = {}
+    for p in question.pairs:
+        i, j = place[p.mode_i], place[p.mode_j]
+        rows[i, j] = (name, p.mode_i, p.mode_j, p.p_i_above_j, p.n, p.wins_i, p.ties, p.wins_j)
+        rows[j, i] = (name, p.mode_j, p.mode_i, 1 - p.p_i_above_j, p.n, p.wins_j, p.ties, p.wins_i)
+    return [rows[key] for key in sorted(rows)]

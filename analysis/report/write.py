@@ -1,0 +1,115 @@
+"""From a fit to a report folder."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from analysis.posterior import write_posterior
+from analysis.report.cautions import cautions
+from analysis.report.findings import findings
+from analysis.report.summary import Json, summarise, versions, write_summary
+from analysis.report.tables import write_tables
+from analysis.results import Fit
+from analysis.stuck import StuckRate, stuck_rates
+from data.locations import writing_folder
+from data.responses import ResponseTable, StuckTable
+from data.study import Study
+
+Progress = Callable[[int, int, str], None]
+"""Called with steps done, steps in all and what is being written."""
+STEPS = 4
+OWNS = (
+    "report.html",
+    "figures",
+    "worth.csv",
+    "pairwise.csv",
+    "parameters.csv",
+    "stuck.csv",
+    "summary.json",
+    "posterior.nc",
+)
+"""Everything a report folder holds: what an earlier report left of it does not outlive the next."""
+
+
+@dataclass(frozen=True)
+class ReportResult:
+    """What was written.
+
+    Attributes
+    ----------
+    folder : Path
+    paths : tuple of Path
+        Every file of the report, ``report.html`` first.
+    summary : mapping
+        The content of ``summary.json``.
+    """
+
+    folder: Path
+    paths: tuple[Path, ...]
+    summary: Mapping[str, Json]
+
+
+def write_report(
+    table: ResponseTable,
+    fit: Fit,
+    out: Path,
+    stuck: StuckTable | None = None,
+    study: Study | None = None,
+    progress: Progress | None = None,
+) -> ReportResult:
+    """Write ``report.html``, its figures, and the tables, summary and posterior to a folder.
+
+    Parameters
+    ----------
+    table, fit
+        The responses and what was made of them.
+    out : Path
+        New, empty, or an earlier report, whose files are then replaced.
+    stuck : StuckTable or None
+        Where it is known in which comparisons the robot got stuck.
+    study : Study or None
+        Names the study and how its trials were made.
+    progress : callable or None
+        Called with steps done, steps in all and what is being written.
+
+    Raises
+    ------
+    InputError
+        If ``out`` holds something that is no report.
+    ElbowroomError
+        If the folder cannot be written; nothing is left behind then.
+    """
+    tell = progress or (lambda done, total, now: None)
+    rates = _known_rates(stuck, fit)
+    checks = int(table.rows.loc[table.rows["check"].astype(bool), "count"].sum())
+    said = cautions(table, fit, findings(fit), study, checks)
+    summary = summarise(table, fit, study, said, checks)
+    with writing_folder(out, marker="summary.json", owns=OWNS) as folder:
+        tell(0, STEPS, "tables")
+        write_tables(fit, rates, [("", rate.between) for rate in rates], folder)
+        write_summary(summary, folder / "summary.json")
+        tell(1, STEPS, "posterior")
+        write_posterior(fit, folder / "posterior.nc")
+        tell(2, STEPS, "figures")
+        from analysis.report.compose import compose
+        from analysis.report.page import render
+
+        page = compose(table, fit, rates, study, said, versions(fit.settings.engine))
+        figures = folder / "figures"
+        figures.mkdir()
+        for section in (page.worth, *page.sections):
+            for drawing in section.drawings:
+                drawing.write(figures)
+        tell(3, STEPS, "page")
+        (folder / "report.html").write_text(render(page), encoding="utf-8", newline="\n")
+        tell(STEPS, STEPS, "")
+        names = sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+    names.sort(key=lambda name: name.name != "report.html")
+    return ReportResult(out, tuple(out / name for name in names), summary)
+
+
+def _known_rates(stuck: StuckTable | None, fit: Fit) -> tuple[StuckRate, ...]:
+    """Stuck rates of the modes that were tried; none if no trials are known."""
+    if stuck is None or stuck.rows.empty:
+        return ()
+    return tuple(rate for rate in stuck_rates(stuck, fit.modes) if rate.comparisons)

@@ -1,0 +1,228 @@
+"""What a fit returns: frozen results that the report, the console and the CSV files read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data.responses import QuestionScale
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Engine = Literal["fast", "pymc", "gibbs"]
+Link = Literal["cumulative", "adjacent"]
+HDI_PROBABILITY = 0.94
+"""Mass of every interval that is not named otherwise."""
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """How the responses are modelled and sampled.
+
+    Attributes
+    ----------
+    engine : {"fast", "pymc", "gibbs"}
+    pooled : bool
+        True leaves out the participants' own deviations.
+    side_effect : bool
+        False leaves out the preference for whatever is shown as A.
+    prior_sd : float
+        Scale of the ability prior alone [logit].
+    link : {"cumulative", "adjacent"}
+        ``adjacent`` (Davidson's ties) needs three levels.
+    seed : int
+    draws, tune, chains : int
+        Kept and warm-up draws a chain, and chains.
+    target_accept : float
+        Acceptance rate that NUTS adapts its step size to.
+    """
+
+    engine: Engine = "fast"
+    pooled: bool = False
+    side_effect: bool = True
+    prior_sd: float = 1.0
+    link: Link = "cumulative"
+    seed: int = 2017
+    draws: int = 1000
+    tune: int = 500
+    chains: int = 4
+    target_accept: float = 0.8
+
+
+@dataclass(frozen=True)
+class Draws:
+    """Posterior draws of one question.
+
+    Attributes
+    ----------
+    ability : ndarray, shape (chain, draw, mode)
+        Sums to 0 over the modes of a draw [logit]; modes as in the response table.
+    worth : ndarray, shape (chain, draw, mode)
+        ``softmax(ability)``: sums to 1 over the modes of a draw.
+    parameters : mapping of str to ndarray, shape (chain, draw)
+        ``side_effect``, ``cut_1``, ``cut_2``, ``log_nu``, ``log_theta``, ``subject_sd``: those the model has.
+    diverging : ndarray of bool, shape (chain, draw)
+    """
+
+    ability: NDArray[np.float64]
+    worth: NDArray[np.float64]
+    parameters: Mapping[str, NDArray[np.float64]]
+    diverging: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Posterior summary of one parameter; the interval is a 94 % HDI."""
+
+    name: str
+    mean: float
+    sd: float
+    hdi_low: float
+    hdi_high: float
+
+
+@dataclass(frozen=True)
+class PairResult:
+    """Two modes against each other.
+
+    Attributes
+    ----------
+    p_i_above_j : float
+        Posterior probability that mode i's ability is above mode j's; nan if the question is not ranked.
+    n : int
+        Responses to this pair, whatever the sides: ``wins_i + ties + wins_j``.
+    """
+
+    mode_i: str
+    mode_j: str
+    p_i_above_j: float
+    n: int
+    wins_i: int
+    ties: int
+    wins_j: int
+
+
+@dataclass(frozen=True)
+class ModeResult:
+    """Posterior summary of one mode on one question.
+
+    Attributes
+    ----------
+    worth_hdi_low, worth_hdi_high : float
+        94 % highest-density interval of the worth.
+    worth_50_low, worth_50_high : float
+        50 % highest-density interval of the worth.
+    p_best : float
+        Posterior probability of being highest on the question as asked.
+    rank_mean : float
+        Posterior mean of the rank; 1 is highest.
+    rank_probabilities : tuple of float
+        Probability of rank 1, 2, ..., number of modes.
+    """
+
+    mode: str
+    ability_mean: float
+    ability_sd: float
+    worth_mean: float
+    worth_sd: float
+    worth_hdi_low: float
+    worth_hdi_high: float
+    worth_50_low: float
+    worth_50_high: float
+    p_best: float
+    rank_mean: float
+    rank_probabilities: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class QuestionFit:
+    """What is known about one question.
+
+    Attributes
+    ----------
+    ranked : bool
+        False if the data or the sampling do not allow a ranking.
+    reason : str
+        Why it is not ranked, as a sentence; empty if it is.
+    modes : tuple of ModeResult
+        In the order of the response table; empty if not ranked.
+    pairs : tuple of PairResult
+        Every pair of modes, asked or not, in the order of the response table.
+    parameters : tuple of Quantity
+        Empty if not ranked.
+    draws : Draws or None
+        None if nothing was sampled. Draws of a question that did not converge are kept for inspection.
+    rhat_max, ess_min : float
+        Over every reported quantity; ESS is the smaller of bulk and tail. nan if nothing was sampled.
+    warnings : tuple of str
+        Sentences for the reader; they do not stop the ranking.
+    n, n_participants : int
+        Responses in the model (checks are out) and the people who gave them (0 if unknown).
+    missing_pairs : tuple of (str, str)
+        Comparisons that were never made and would be needed to connect the modes.
+    hierarchical : bool
+        True if participants have deviations of their own in this fit.
+    """
+
+    question: QuestionScale
+    ranked: bool
+    reason: str
+    modes: tuple[ModeResult, ...]
+    pairs: tuple[PairResult, ...]
+    parameters: tuple[Quantity, ...]
+    draws: Draws | None
+    rhat_max: float
+    ess_min: float
+    divergences: int
+    warnings: tuple[str, ...]
+    n: int
+    n_participants: int
+    missing_pairs: tuple[tuple[str, str], ...] = ()
+    hierarchical: bool = False
+
+
+@dataclass(frozen=True)
+class Fit:
+    """All questions of a response table, fitted.
+
+    Attributes
+    ----------
+    modes : tuple of str
+        The modes in the order of the response table; the last axis of every draw.
+    model : str
+        The likelihood in a sentence.
+    priors : mapping of str to str
+        Prior by parameter, as written in the model.
+    rhat_max, ess_min : float
+        Worst over the questions; nan if nothing was sampled.
+    converged : bool
+        True if every question that was sampled passed the convergence gate.
+    ranked : bool
+        True only if every question is ranked.
+    warnings : tuple of str
+        Sentences about the fit as a whole; those about one question stand with the question.
+    """
+
+    questions: tuple[QuestionFit, ...]
+    settings: FitSettings
+    modes: tuple[str, ...]
+    model: str
+    priors: Mapping[str, str] = field(default_factory=dict)
+    rhat_max: float = float("nan")
+    ess_min: float = float("nan")
+    divergences: int = 0
+    converged: bool = True
+    ranked: bool = True
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def posterior(self) -> xr.DataTree:
+        """The draws with named dimensions; ``arviz.from_netcdf`` opens what its ``to_netcdf`` writes."""
+        from analysis.posterior import posterior_tree
+
+        return posterior_tree(self)

@@ -1,0 +1,125 @@
+"""Draws to results: abilities, worths, ranks, pairs and parameters, vectorised over modes."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.counts import Counts
+from analysis.diagnostics import Convergence, convergence, hdi
+from analysis.results import HDI_PROBABILITY, Draws, ModeResult, PairResult, Quantity
+
+FloatArray = NDArray[np.float64]
+
+
+def draws_in_order(draws: Draws, order: list[int]) -> Draws:
+    """The same draws with the modes in another order."""
+    return Draws(draws.ability[..., order], draws.worth[..., order], draws.parameters, draws.diverging)
+
+
+def every_draw(draws: Draws, step: int) -> Draws:
+    """Each ``step``-th draw of every chain."""
+    return Draws(
+        draws.ability[:, ::step],
+        draws.worth[:, ::step],
+        {name: values[:, ::step] for name, values in draws.parameters.items()},
+        draws.diverging[:, ::step],
+    )
+
+
+def reported_convergence(draws: Draws) -> Convergence:
+    """Convergence of every quantity that is reported: abilities, worths and parameters."""
+    quantities = [
+        np.moveaxis(draws.ability, -1, 0),
+        np.moveaxis(draws.worth, -1, 0),
+        *(values[None] for values in draws.parameters.values()),
+    ]
+    return convergence(np.concatenate(quantities))
+
+
+def mode_results(draws: Draws, modes: tuple[str, ...]) -> tuple[ModeResult, ...]:
+    """Posterior summary of every mode, in the order of the draws' last axis."""
+    ability, worth = _flat(draws.ability), _flat(draws.worth)
+    wide, narrow = hdi(worth, HDI_PROBABILITY), hdi(worth, 0.5)
+    probabilities = rank_probabilities(ability)
+    return tuple(
+        ModeResult(
+            mode=mode,
+            ability_mean=float(ability[:, k].mean()),
+            ability_sd=float(ability[:, k].std(ddof=1)),
+            worth_mean=float(worth[:, k].mean()),
+            worth_sd=float(worth[:, k].std(ddof=1)),
+            worth_hdi_low=float(wide[0, k]),
+            worth_hdi_high=float(wide[1, k]),
+            worth_50_low=float(narrow[0, k]),
+            worth_50_high=float(narrow[1, k]),
+            p_best=float(probabilities[k, 0]),
+            rank_mean=float(probabilities[k] @ np.arange(1, len(modes) + 1)),
+            rank_probabilities=tuple(float(p) for p in probabilities[k]),
+        )
+        for k, mode in enumerate(modes)
+    )
+
+
+def rank_probabilities(ability: FloatArray) -> FloatArray:
+    """Share of the draws in which each mode has each rank.
+
+    Parameters
+    ----------
+    ability : ndarray, shape (draw, mode)
+
+    Returns
+    -------
+    ndarray, shape (mode, rank)
+        Rank 1, the highest ability, first; rows and columns sum to 1.
+    """
+    n_draws, n_modes = ability.shape
+    by_rank = np.argsort(-ability, axis=1, kind="stable")
+    tally = np.zeros((n_modes, n_modes))
+    for rank in range(n_modes):
+        tally[:, rank] = np.bincount(by_rank[:, rank], minlength=n_modes)
+    return tally / n_draws
+
+
+def pair_results(counts: Counts, modes: tuple[str, ...], draws: Draws | None) -> tuple[PairResult, ...]:
+    """Every pair of modes with its answers, and who is above whom if there are draws.
+
+    Parameters
+    ----------
+    modes : tuple of str
+        The order of the pairs, and of the draws' last axis.
+    """
+    place = [counts.modes.index(mode) for mode in modes]
+    wins, ties = counts.wins()[np.ix_(place, place)], counts.ties()[np.ix_(place, place)]
+    above = np.full((len(modes), len(modes)), np.nan)
+    if draws is not None:
+        ability = _flat(draws.ability)
+        for i in range(len(modes)):
+            above[i] = (ability[:, i : i + 1] > ability).mean(axis=0)
+    return tuple(
+        PairResult(
+            mode_i=modes[i],
+            mode_j=modes[j],
+            p_i_above_j=float(above[i, j]),
+            n=int(wins[i, j] + ties[i, j] + wins[j, i]),
+            wins_i=int(wins[i, j]),
+            ties=int(ties[i, j]),
+            wins_j=int(wins[j, i]),
+        )
+        for i in range(len(modes))
+        for j in range(i + 1, len(modes))
+    )
+
+
+def parameter_results(draws: Draws) -> tuple[Quantity, ...]:
+    """Posterior summary of every parameter beside the abilities."""
+    return tuple(quantity(name, values.ravel()) for name, values in draws.parameters.items())
+
+
+def quantity(name: str, draws: FloatArray) -> Quantity:
+    """Mean, sd and 94 % HDI of one quantity; ``draws`` has shape (draw,)."""
+    low, high = hdi(draws, HDI_PROBABILITY)
+    return Quantity(name, float(draws.mean()), float(draws.std(ddof=1)), float(low), float(high))
+
+
+def _flat(draws: FloatArray) -> FloatArray:
+    """Chains laid end to end: (chain, draw, mode) to (draw, mode)."""
+    return draws.reshape(-1, draws.shape[-1])
