@@ -114,28 +114,36 @@ def simulate_cohort(
     check_rehearsal(study, metric_names())
     stored = store.add_study(study, opened.text)
     known = {p.id for p in store.participants(stored) if p.finished_at is not None}
-    numbers = [n for n in range(1, participants + 1) if _participant_id(study, seed, n) not in known]
+    numbers = [n for n in range(1, participants + 1) if participant_id(study, seed, n) not in known]
     errands = [
-        _Errand(study, _participant_id(study, seed, n), n, seed, planned, store.recordings_folder)
+        _Errand(study, participant_id(study, seed, n), n, seed, planned, store.recordings_folder)
         for n in numbers
         for planned in plan_session(study, n)
     ]
     per_person = len(errands) // len(numbers) if numbers else 0
     results = map_jobs(_run, errands, n_jobs)
     trials = stuck = 0
-    for index, number in enumerate(numbers):
-        done = []
-        for k in range(per_person):
-            done.append(next(results))
-            if progress:
-                progress(index * per_person + k + 1, len(errands), f"participant {number}")
-        trials += sum(len(d.trials) for d in done)
-        stuck += sum(t.outcome == "stuck" for d in done for t in d.trials)
-        _keep(store, stored, _participant_id(study, seed, number), number, done)
+    unkept = [participant_id(study, seed, n) for n in numbers]
+    try:
+        for index, number in enumerate(numbers):
+            done = []
+            for k in range(per_person):
+                done.append(next(results))
+                if progress:
+                    progress(index * per_person + k + 1, len(errands), f"participant {number}")
+            _keep(store, stored, unkept[0], number, done)
+            del unkept[0]
+            trials += sum(len(d.trials) for d in done)
+            stuck += sum(t.outcome == "stuck" for d in done for t in d.trials)
+    except BaseException:
+        results.close()
+        _drop_recordings(store.recordings_folder, unkept)
+        raise
     return Cohort(participants, participants - len(numbers), len(errands), trials, stuck)
 
 
-def _participant_id(study: Study, seed: int, number: int) -> str:
+def participant_id(study: Study, seed: int, number: int) -> str:
+    """The id of a cohort's participant: which study, which seed, which number."""
     return f"{study.sha256[:6]}-s{seed}-{number:03d}"
 
 
@@ -216,6 +224,13 @@ def _keep(store: Store, stored: StoredStudy, participant_id: str, number: int, d
             store.submit_responses(d.comparison.id, d.answers, now)
         store.finish_participant(participant_id, now)
         store.log("elbowroom simulate", "participant simulated", {"participant": participant_id}, at=now)
+
+
+def _drop_recordings(folder: Path, participants: Sequence[str]) -> None:
+    """Remove the laps of participants who were not stored: no recording without its row."""
+    for participant in participants:
+        for recording in folder.glob(f"{participant}.c*.parquet"):
+            recording.unlink(missing_ok=True)
 
 
 def _seed_of(errand: _Errand, *what: int) -> int:

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from analysis.console_ranking import print_ranking
 from analysis.fit import fit
-from analysis.report import ReportResult, write_report
+from analysis.report import MARKER, ReportResult, write_report
 from analysis.results import Engine, FitSettings, Link
 from app.cli.progress import progress
 from app.studies import open_study
@@ -64,7 +64,7 @@ def make_report(request: Request) -> ReportResult:
         link=request.link,
         seed=request.seed,
     )
-    check_folder(request.out)
+    check_folder(request.out, MARKER)
     with progress("Bradley-Terry model") as report:
         fitted = fit(evidence.table, settings, progress=report)
     with progress("Report") as report:

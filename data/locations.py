@@ -34,17 +34,25 @@ def cannot_write(place: Path, error: OSError) -> ElbowroomError:
     return ElbowroomError(f"{place}: cannot be written: {reason[0].lower()}{reason[1:]}")
 
 
-def check_folder(out: Path) -> None:
+def check_folder(out: Path, marker: str | None = None) -> None:
     """Find out that a folder can be written, before any expensive work starts; nothing stays behind.
+
+    Parameters
+    ----------
+    out : Path
+    marker : str, optional
+        As `writing_folder` will be given it, if the whole folder is to be the result.
 
     Raises
     ------
     InputError
-        If the name is taken by something that is no folder.
+        If the name is taken by something that is no folder, or by a folder with other contents.
     ElbowroomError
         If the folder, or the one it is to be made in, cannot be written.
     """
     _refuse_what_is_no_folder(out)
+    if marker is not None:
+        _refuse_other_contents(out, marker)
     try:
         nearest = next(place for place in (out, *out.absolute().parents) if place.is_dir())
         with tempfile.TemporaryFile(dir=nearest) as probe:
@@ -118,10 +126,7 @@ def writing_folder(out: Path, *, marker: str, owns: Collection[str]) -> Iterator
     _refuse_what_is_no_folder(out)
     exists = out.is_dir()
     try:
-        if exists and not (out / marker).is_file() and any(_visible(out)):
-            raise InputError(
-                f"{out}: the folder is not empty and holds no earlier result ({marker}); name another one"
-            )
+        _refuse_other_contents(out, marker)
         home = out if exists else out.absolute().parent
         home.mkdir(parents=True, exist_ok=True)
         partial = Path(tempfile.mkdtemp(dir=home, prefix=f".{out.name}.partial-"))
@@ -155,6 +160,13 @@ def _take_over(partial: Path, out: Path, marker: str, owns: Collection[str]) -> 
 
 def _visible(folder: Path) -> Iterator[Path]:
     return (entry for entry in folder.iterdir() if not entry.name.startswith("."))
+
+
+def _refuse_other_contents(out: Path, marker: str) -> None:
+    if out.is_dir() and not (out / marker).is_file() and any(_visible(out)):
+        raise InputError(
+            f"{out}: the folder is not empty and holds no earlier result ({marker}); name another one"
+        )
 
 
 def _refuse_what_is_no_folder(out: Path) -> None:

@@ -5,7 +5,7 @@ that of the jobs, and a cluster serves as well as one machine: under ``joblib.pa
 the same call spreads over a Dask cluster.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -64,7 +64,9 @@ def run_laps(jobs: Sequence[LapJob], n_jobs: int = 1, progress: Progress | None 
     return results
 
 
-def map_jobs(work: Callable[[Job], Result], jobs: Sequence[Job], n_jobs: int) -> Iterator[Result]:
+def map_jobs(
+    work: Callable[[Job], Result], jobs: Sequence[Job], n_jobs: int
+) -> Generator[Result, None, None]:
     """``map`` over processes, in order."""
     if n_jobs == 1 or len(jobs) < 2:
         yield from map(work, jobs)

@@ -7,8 +7,8 @@ metadata under ``elbowroom``.
 """
 
 import hashlib
+import io
 import json
-import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -17,6 +17,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from data.errors import ElbowroomError, InputError
+from data.locations import atomic_write
 from sim_trials.loop import COMPLETED, DIVERGED, TICK
 from sim_trials.operators import Operator
 
@@ -114,29 +115,25 @@ class Recording:
         """Write the file, so that it is there whole or not at all; its SHA-256 is returned.
 
         The same recording gives the same bytes with the same version of pyarrow.
+
+        Raises
+        ------
+        ElbowroomError
+            If the place is full or cannot be written.
         """
-        table = _table(self)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
-        try:
-            with part.open("wb") as file:
-                pq.write_table(
-                    table,
-                    file,
-                    compression="zstd",
-                    compression_level=9,
-                    use_dictionary=[_TRIGGERS],
-                    column_encoding=_encodings(table.schema),
-                    write_page_checksum=True,
-                )
-                file.flush()
-                os.fsync(file.fileno())
-            part.replace(path)
-        except BaseException:
-            part.unlink(missing_ok=True)
-            raise
-        _sync_folder(path.parent)
-        return file_sha256(path)
+        table, buffer = _table(self), io.BytesIO()
+        pq.write_table(
+            table,
+            buffer,
+            compression="zstd",
+            compression_level=9,
+            use_dictionary=[_TRIGGERS],
+            column_encoding=_encodings(table.schema),
+            write_page_checksum=True,
+        )
+        content = buffer.getvalue()
+        atomic_write(path, content)
+        return hashlib.sha256(content).hexdigest()
 
 
 def file_sha256(path: Path) -> str:
@@ -260,17 +257,6 @@ def _numbers(table: pa.Table, name: str, kind: pa.DataType, every: int) -> np.nd
     if kept.null_count:
         raise ValueError(f"column {name} has gaps")
     return np.array(kept.to_numpy())
-
-
-def _sync_folder(folder: Path) -> None:
-    """Make the new name itself durable, where the system can."""
-    if not hasattr(os, "O_DIRECTORY"):
-        return
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def check_same_study(facts: Facts, study_sha256: str) -> None:

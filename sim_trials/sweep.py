@@ -16,6 +16,7 @@ import numpy as np
 import pandas as pd
 
 from data.errors import InputError
+from data.locations import writing_folder
 from data.study import Study
 from sim_trials.batch import LapJob, Progress, condition_jobs, map_jobs
 from sim_trials.events import dwell_ticks, ticks_below
@@ -26,6 +27,8 @@ from sim_trials.trial import mode_of, simulate
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SURFACE_TABLE = "stuck_surface.csv"
+"""The table; it also tells an earlier sweep's folder, which may be replaced."""
 _FIGURE_FORMATS = ("png", "svg")
 _INK, _SHADES = "#1D2930", ("#F1F2EF", "#2F5566")
 
@@ -154,18 +157,15 @@ def write_sweep(result: SweepResult, out: Path) -> tuple[Path, ...]:
     """Write ``stuck_surface.csv`` and the figure as PNG and SVG into a folder; the paths are returned."""
     from matplotlib import rc_context
 
-    out.mkdir(parents=True, exist_ok=True)
-    table = out / "stuck_surface.csv"
-    result.table.to_csv(table, index=False)
-    written = [table]
-    with rc_context({"svg.hashsalt": "elbowroom"}):
-        figure = surface_figure(result)
-        for kind in _FIGURE_FORMATS:
-            path = out / f"stuck_surface.{kind}"
-            metadata = {"Date": None} if kind == "svg" else None
-            figure.savefig(path, dpi=200, metadata=metadata)
-            written.append(path)
-    return tuple(written)
+    names = (SURFACE_TABLE, *(f"stuck_surface.{kind}" for kind in _FIGURE_FORMATS))
+    with writing_folder(out, marker=SURFACE_TABLE, owns=names) as folder:
+        result.table.to_csv(folder / SURFACE_TABLE, index=False)
+        with rc_context({"svg.hashsalt": "elbowroom"}):
+            figure = surface_figure(result)
+            for kind in _FIGURE_FORMATS:
+                metadata = {"Date": None} if kind == "svg" else None
+                figure.savefig(folder / f"stuck_surface.{kind}", dpi=200, metadata=metadata)
+    return tuple(out / name for name in names)
 
 
 def _with(study: Study, edge: float, dwell: float) -> Study:

@@ -1,5 +1,5 @@
 """The report folder: one page, its figures, and the numbers as CSV, JSON and NetCDF."""
 
-from analysis.report.write import ReportResult, write_report
+from analysis.report.write import MARKER, ReportResult, write_report
 
-__all__ = ["ReportResult", "write_report"]
+__all__ = ["MARKER", "ReportResult", "write_report"]

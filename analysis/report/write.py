@@ -18,6 +18,8 @@ from data.study import Study
 Progress = Callable[[int, int, str], None]
 """Called with steps done, steps in all and what is being written."""
 STEPS = 4
+MARKER = "summary.json"
+"""Written last; tells an earlier report, which may be replaced."""
 OWNS = (
     "report.html",
     "figures",
@@ -84,7 +86,7 @@ def write_report(
     checks = int(table.rows.loc[table.rows["check"].astype(bool), "count"].sum())
     said = cautions(table, fit, findings(fit), study, checks)
     summary = summarise(table, fit, study, said, checks)
-    with writing_folder(out, marker="summary.json", owns=OWNS) as folder:
+    with writing_folder(out, marker=MARKER, owns=OWNS) as folder:
         tell(0, STEPS, "tables")
         write_tables(fit, rates, [("", rate.between) for rate in rates], folder)
         write_summary(summary, folder / "summary.json")

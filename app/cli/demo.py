@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from app.cli.options import CORES, SeedOption
+from data.errors import InputError
 
 
 def demo(
@@ -24,7 +25,7 @@ def demo(
     Example: elbowroom demo --out elbowroom-demo
     """
     from app.cli.progress import progress
-    from app.cohort import simulate_cohort
+    from app.cohort import participant_id, simulate_cohort
     from app.reporting import Request, make_report
     from app.studies import open_study
     from data.export import export_study
@@ -35,7 +36,14 @@ def demo(
     check_folder(out)
     store_path = out / "study.sqlite"
     print("Elbowroom demo: a simulated cohort. What it says is about the simulation, not about people.")
+    cohort_ids = {participant_id(opened.study, seed, n) for n in range(1, participants + 1)}
     with Store.open(store_path) as store:
+        others = [p for s in store.studies() for p in store.participants(s) if p.id not in cohort_ids]
+        if others:
+            raise InputError(
+                f"--out: {store_path} holds {len(others)} participants who are not of this demo; name "
+                "another folder"
+            )
         with progress("Simulated cohort") as report:
             cohort = simulate_cohort(opened, store, participants, seed=seed, n_jobs=CORES, progress=report)
         print(cohort.sentence)

@@ -29,11 +29,13 @@ def sweep(
     """
     from app.cli.progress import progress
     from app.studies import open_study
+    from data.locations import check_folder
+    from sim_trials.sweep import SURFACE_TABLE, write_sweep
     from sim_trials.sweep import sweep as run_sweep
-    from sim_trials.sweep import write_sweep
 
     opened = open_study(study)
     edges, dwells = parse_grid("--right-edge", right_edge), parse_grid("--dwell", dwell)
+    check_folder(out, SURFACE_TABLE)
     with progress("Sweep") as report:
         result = run_sweep(opened.study, edges, dwells, participants, seed=seed, n_jobs=jobs, progress=report)
     paths = write_sweep(result, out)

@@ -1,0 +1,112 @@
+"""The console's charts: one data colour, modes by row, an interval on every estimate."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Literal
+
+import altair as alt
+import pandas as pd
+import streamlit as st
+
+from app.console.findings import QuestionAtAGlance, StuckAtAGlance
+
+LIKELY = 0.8
+"""From this chance on a first rank is set in bold."""
+_ROW_PX = 28
+_AXIS_PX = 44
+
+
+@dataclass(frozen=True)
+class _Palette:
+    ink: str
+    ink_2: str
+    ink_3: str
+    line: str
+    data: str
+    data_2: str
+    surface: str
+
+
+_LIGHT = _Palette("#1D2930", "#4C5B65", "#66747D", "#DDE1DE", "#2F5566", "#7C95A1", "#FFFFFF")
+_DARK = _Palette("#E8EDEF", "#AEBBC3", "#8C9BA5", "#313D45", "#9FC3D3", "#66818E", "#1A2228")
+
+
+def palette() -> _Palette:
+    """Colours of the theme that the browser shows."""
+    return _DARK if st.context.theme.type == "dark" else _LIGHT
+
+
+def percent(share: float) -> str:
+    """A chance as text: never a bare 0 or 100."""
+    if share < 0.005:
+        return "<1 %"
+    return ">99 %" if share > 0.995 else f"{round(100 * share)} %"
+
+
+def worth_chart(question: QuestionAtAGlance) -> alt.Chart:
+    """Worth of every mode with its 94 % interval; dotted: no preference; right: the chance to rank first."""
+    rows = pd.DataFrame([asdict(standing) for standing in question.standings])
+    rows["first"] = rows["p_best"].map(percent)
+    rows["likely"] = rows["p_best"] >= LIKELY
+    top = _top(rows)
+    return _intervals(rows, "worth", top, len(rows), ".1f", rule_at=1 / len(rows), text="first")
+
+
+def stuck_chart(rates: Sequence[StuckAtAGlance]) -> alt.Chart:
+    """Stuck rate of every mode with its 94 % interval; right: how many of how many comparisons."""
+    rows = pd.DataFrame([asdict(rate) for rate in rates])
+    rows["of"] = [f"{rate.stuck} of {rate.comparisons}" for rate in rates]
+    rows["likely"] = False
+    top = _top(rows)
+    return _intervals(rows, "rate", top, len(rows), ".0%", rule_at=None, text="of")
+
+
+def _top(rows: pd.DataFrame) -> float:
+    """Where the axis ends."""
+    return next(top for top in (0.4, 0.6, 0.8, 1.0) if rows["high"].max() <= top or top == 1.0)
+
+
+def _intervals(
+    rows: pd.DataFrame, value: str, top: float, n: int, axis_format: str, rule_at: float | None, text: str
+) -> alt.Chart:
+    colours = palette()
+    scale = alt.Scale(domain=[0, top], nice=False)
+    axis = alt.Axis(
+        format=axis_format, tickCount=4, grid=True, gridColor=colours.line, domain=False, ticks=False,
+        labelColor=colours.ink_3, labelFontSize=12, title=None,
+    )  # fmt: skip
+    y = alt.Y(
+        "label:N", sort=None, title=None, axis=alt.Axis(
+            domain=False, ticks=False, labelColor=colours.ink, labelFontSize=12, labelPadding=8,
+            labelBaseline="middle",
+            labelLimit=120,
+        ),
+    )  # fmt: skip
+    base = alt.Chart(rows).encode(y=y)
+    layers = []
+    if rule_at is not None:
+        rule = alt.Chart(pd.DataFrame({"at": [rule_at]})).mark_rule(strokeDash=[2, 3], color=colours.ink_3)
+        layers.append(rule.encode(x=alt.X("at:Q", scale=scale, axis=axis)))
+    layers.append(
+        base.mark_rule(strokeWidth=2, color=colours.data_2).encode(
+            x=alt.X("low:Q", scale=scale, axis=axis), x2="high:Q"
+        )
+    )
+    dots = base.mark_point(
+        size=70, filled=True, fill=colours.surface, stroke=colours.data, strokeWidth=2.5, opacity=1
+    )
+    layers.append(dots.encode(x=alt.X(f"{value}:Q", scale=scale, axis=axis)))
+    for is_likely in (False, True):
+        colour = colours.ink if is_likely else colours.ink_2
+        weight: Literal["normal", "bold"] = "bold" if is_likely else "normal"
+        words = base.mark_text(align="right", fontSize=12, dx=56, fontWeight=weight, color=colour)
+        layers.append(
+            words.encode(x=alt.value("width"), text=f"{text}:N").transform_filter(
+                alt.FieldEqualPredicate(field="likely", equal=is_likely)
+            )
+        )
+    return (
+        alt.layer(*layers)
+        .properties(height=_ROW_PX * n + _AXIS_PX, padding={"left": 4, "right": 4, "top": 4, "bottom": 4})
+        .configure_view(strokeWidth=0)
+    )

@@ -1,0 +1,57 @@
+"""What the console reads of the store, under the labels that are shown now."""
+
+from dataclasses import dataclass
+
+import streamlit as st
+
+from app.console.findings import QuestionAtAGlance, StuckAtAGlance, ranking_at_a_glance, stuck_at_a_glance
+from app.console.labels import shown_labels
+from app.server.desk import Desk
+from data.errors import InputError
+from data.store import Counts
+
+_SIMULATED = "include-simulated"
+_SWITCH = "include-simulated-switch"
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The study's data at a glance; ``why_none`` says why there is no ranking."""
+
+    counts: Counts
+    questions: tuple[QuestionAtAGlance, ...]
+    stuck: tuple[StuckAtAGlance, ...]
+    why_none: str
+
+
+def includes_simulated() -> bool:
+    """Whether the researcher asked for simulated participants too."""
+    return bool(st.session_state.get(_SIMULATED, False))
+
+
+def simulated_switch(desk: Desk) -> None:
+    """A switch for simulated participants, where there are any; it holds for all pages."""
+    if desk.store.participants(desk.stored_study, source="simulated"):
+        # Streamlit forgets a widget's state on a page without it, so the choice is kept beside it.
+        st.session_state.setdefault(_SWITCH, includes_simulated())
+        st.session_state[_SIMULATED] = st.toggle("Include simulated participants", key=_SWITCH)
+
+
+def evidence(desk: Desk) -> Evidence:
+    """Everything the charts need."""
+    simulated = includes_simulated()
+    labels = shown_labels(desk)
+    counts = desk.store.counts(desk.stored_study, simulated)
+    questions: tuple[QuestionAtAGlance, ...] = ()
+    why_none = ""
+    try:
+        questions = ranking_at_a_glance(desk.store.responses_table(desk.stored_study, simulated), labels)
+    except InputError:
+        why_none = "There are no answers of people yet."
+    stuck: tuple[StuckAtAGlance, ...] = ()
+    try:
+        table = desk.store.stuck_table(desk.stored_study, simulated)
+        stuck = stuck_at_a_glance(table, labels) if table is not None else ()
+    except InputError:
+        pass
+    return Evidence(counts, questions, stuck, why_none)

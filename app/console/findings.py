@@ -1,0 +1,88 @@
+"""What the console says of the data: the ranking at a glance and the stuck rates, under the labels shown."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from analysis.counts import count_responses
+from analysis.quick import quick_ranking
+from analysis.stuck import stuck_rates
+from data.errors import ElbowroomError
+from data.responses import ResponseTable, StuckTable
+
+
+@dataclass(frozen=True)
+class Standing:
+    """One mode on one question: worth with its 94 % interval, and the chance to rank first."""
+
+    label: str
+    worth: float
+    low: float
+    high: float
+    p_best: float
+
+
+@dataclass(frozen=True)
+class QuestionAtAGlance:
+    """The standings on one question; ``reason`` says why there are none."""
+
+    name: str
+    short: str
+    wording: str
+    responses: int
+    standings: tuple[Standing, ...]
+    reason: str
+
+
+@dataclass(frozen=True)
+class StuckAtAGlance:
+    """In how many of its comparisons a mode had the robot stuck; rate with its 94 % interval."""
+
+    label: str
+    stuck: int
+    comparisons: int
+    rate: float
+    low: float
+    high: float
+
+
+def ranking_at_a_glance(table: ResponseTable, labels: Mapping[str, str]) -> tuple[QuestionAtAGlance, ...]:
+    """Each question's standings, in milliseconds and pooled; the report has the full model."""
+    found = []
+    for question in table.questions:
+        counts = count_responses(table, question)
+        standings: tuple[Standing, ...] = ()
+        try:
+            quick = quick_ranking(counts, tuple(labels))
+            reason = _relabelled(quick.reason, labels)
+            standings = tuple(
+                Standing(labels[mode.mode], mode.worth, mode.worth_low, mode.worth_high, mode.p_best)
+                for mode in quick.modes
+            )
+        except ElbowroomError:
+            reason = "The answers don't allow an estimate yet."
+        found.append(
+            QuestionAtAGlance(question.name, question.short, question.wording, counts.n, standings, reason)
+        )
+    return tuple(found)
+
+
+def stuck_at_a_glance(table: StuckTable, labels: Mapping[str, str]) -> tuple[StuckAtAGlance, ...]:
+    """Each mode's rate of comparisons in which it had the robot stuck."""
+    return tuple(
+        StuckAtAGlance(
+            labels[rate.mode],
+            rate.stuck,
+            rate.comparisons,
+            rate.rate_mean,
+            rate.rate_hdi_low,
+            rate.rate_hdi_high,
+        )
+        for rate in stuck_rates(table, tuple(labels))
+    )
+
+
+def _relabelled(reason: str, labels: Mapping[str, str]) -> str:
+    """A reason may name modes; while the study is blinded it only says that there is one."""
+    if not reason or all(name == label for name, label in labels.items()):
+        return reason
+    return "The answers don't allow a ranking yet: not all modes are connected by comparisons."

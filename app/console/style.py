@@ -1,0 +1,43 @@
+"""How the console looks: its sheet, and the few pieces Streamlit has none of."""
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+
+import streamlit as st
+
+_HERE = Path(__file__).resolve().parent
+LOGO = _HERE / "logo.svg"
+
+
+def console_page() -> None:
+    """The console's own style."""
+    st.html(f"<style>{(_HERE / 'console.css').read_text(encoding='utf-8')}</style>")
+
+
+def headline(title: str, chips: Sequence[str] = ()) -> None:
+    """The page's title with small facts beside it."""
+    shown = "".join(f'<span class="chip">{escape(chip)}</span>' for chip in chips)
+    st.html(f'<div class="headline"><h1>{escape(title)}</h1>{shown}</div>')
+
+
+def key_figures(figures: Sequence[tuple[str, str, str]]) -> None:
+    """A row of figures: (figure, of how many, what)."""
+    cells = "".join(
+        f"<div><b>{escape(figure)}</b> <span>{escape(of)}</span><p>{escape(what)}</p></div>"
+        for figure, of, what in figures
+    )
+    st.html(f'<div class="figures">{cells}</div>')
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], numbers: Sequence[int] = ()) -> None:
+    """A plain table; ``numbers`` are the columns that align to the right."""
+
+    def line(tag: str, cells: Sequence[str]) -> str:
+        kind = ["number" if i in numbers else "" for i in range(len(cells))]
+        inner = "".join(f'<{tag} class="{k}">{escape(c)}</{tag}>' for c, k in zip(cells, kind, strict=True))
+        return f"<tr>{inner}</tr>"
+
+    body = "".join(line("td", row) for row in rows)
+    inner = f"<thead>{line('th', head)}</thead><tbody>{body}</tbody>"
+    st.html(f'<div class="scroll"><table class="plain">{inner}</table></div>')

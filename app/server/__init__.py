@@ -1,0 +1,5 @@
+"""The browser app as one ASGI process."""
+
+from app.server.serving import serve
+
+__all__ = ["serve"]

@@ -1,0 +1,13 @@
+"""The script that Streamlit runs for every page: the console at its own addresses, else the study."""
+
+from urllib.parse import urlsplit
+
+import streamlit as st
+
+from app.console.pages import PATHS, show_console
+from app.participant.pages import show_study
+
+if urlsplit(st.context.url or "").path.strip("/") in PATHS:
+    show_console()
+else:
+    show_study()

@@ -1,0 +1,134 @@
+"""What the participant's page fetches and sends beside Streamlit: laps, what was watched, answers.
+
+Each looks up the cookie's participant and the comparison that is open in the store, so an address names a
+slot and a lap alone, and the same address means another lap in the next comparison.
+"""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from app.participant.progress import Progress, progress_of
+from app.participant.watching import BadReport, WatchReport, store_report, watched_s
+from app.server.desk import desk
+from app.server.visitors import visitor
+from data.errors import ElbowroomError, InputError
+
+_NO_STORE = {"cache-control": "no-store"}
+_LONGEST_BODY = 64 * 1024
+
+Handler = Callable[[Request, Progress], Awaitable[Response]]
+
+
+def _for_participants(handler: Handler) -> Callable[[Request], Awaitable[Response]]:
+    """The handler, for those alone who have a comparison open."""
+
+    async def checked(request: Request) -> Response:
+        progress = await run_in_threadpool(_progress, request)
+        if progress is None:
+            return _answer(403, "no participant")
+        if progress.comparison is None:
+            return _answer(409, "no comparison is open")
+        return await handler(request, progress)
+
+    return checked
+
+
+def _progress(request: Request) -> Progress | None:
+    here = visitor(desk(), request.cookies)
+    if here is None or here.participant is None:
+        return None
+    return progress_of(desk().store, here.participant)
+
+
+async def _lap(request: Request, progress: Progress) -> Response:
+    slot, lap = request.path_params["slot"], request.path_params["lap"]
+    if slot not in ("A", "B") or not 1 <= lap <= desk().study.protocol.laps_per_condition:
+        return _answer(404, "no such lap")
+    watched = await asyncio.wrap_future(desk().laps.lap(progress.lap_key(desk().study, slot, lap)))
+    return Response(watched.frames, media_type="application/octet-stream", headers=_NO_STORE)
+
+
+async def _watched(request: Request, progress: Progress) -> Response:
+    body = await _body(request)
+    assert progress.comparison is not None
+    if body is None:
+        return _answer(422, "no report")
+    if body.get("comparison") != progress.comparison.position:
+        return _answer(409, "another comparison is open")
+    try:
+        report = WatchReport.parse(body, desk().study)
+    except BadReport as error:
+        return _answer(422, str(error))
+    laps = {}
+    for run in report.runs:
+        key = progress.lap_key(desk().study, run.slot, run.lap)
+        laps[run.slot, run.lap] = await asyncio.wrap_future(desk().laps.lap(key))
+    try:
+        await run_in_threadpool(store_report, desk().store, progress, report, laps, desk().clock())
+    except BadReport as error:
+        return _answer(422, str(error))
+    seconds = await run_in_threadpool(watched_s, desk().store, progress.comparison)
+    return JSONResponse({"watched": seconds}, headers=_NO_STORE)
+
+
+async def _answers(request: Request, progress: Progress) -> Response:
+    body = await _body(request)
+    comparison = progress.comparison
+    assert comparison is not None
+    answers = body.get("answers") if body is not None else None
+    if body is None or not isinstance(answers, dict):
+        return _answer(422, "no answers")
+    if body.get("comparison") != comparison.position:
+        return _answer(409, "another comparison is open")
+    seconds = await run_in_threadpool(watched_s, desk().store, comparison)
+    if not progress.may_answer(desk().study, seconds):
+        return _answer(422, "not watched long enough")
+    given = {str(name): str(answer) for name, answer in answers.items()}
+    try:
+        await run_in_threadpool(_submit, comparison.id, given, progress)
+    except InputError:
+        return _answer(422, "an answer is missing or not on its scale")
+    except ElbowroomError:
+        return _answer(503, "not stored")
+    return JSONResponse({"stored": True}, headers=_NO_STORE)
+
+
+def _submit(comparison_id: str, answers: dict[str, str], progress: Progress) -> None:
+    """Store the answers, and with the last ones that the participant has finished."""
+    store, now = desk().store, desk().clock()
+    with store.transaction():
+        store.submit_responses(comparison_id, answers, now)
+        if progress.is_last:
+            store.finish_participant(progress.participant.id, now)
+
+
+async def _body(request: Request) -> dict[str, object] | None:
+    if not request.headers.get("content-type", "").startswith("application/json"):
+        return None
+    content = b""
+    async for part in request.stream():
+        content += part
+        if len(content) > _LONGEST_BODY:
+            return None
+    try:
+        body = json.loads(content)
+    except (UnicodeDecodeError, ValueError):
+        return None
+    return body if isinstance(body, dict) else None
+
+
+def _answer(status: int, why: str) -> Response:
+    return JSONResponse({"refused": why}, status_code=status, headers=_NO_STORE)
+
+
+ROUTES = (
+    Route("/laps/{slot}/{lap:int}", _for_participants(_lap), methods=["GET"]),
+    Route("/watched", _for_participants(_watched), methods=["POST"]),
+    Route("/answers", _for_participants(_answers), methods=["POST"]),
+)

@@ -1,0 +1,145 @@
+"""`elbowroom serve`: one process with the browser app, until it is told to stop."""
+
+import signal
+import socket
+from pathlib import Path
+from types import FrameType
+
+from data.errors import ElbowroomError, InputError
+from data.store import Store, StoredStudy, token_sha256
+from data.store.links import LinkKind
+from data.study_file import parse_study, study_text
+
+_WILDCARDS = ("", "0.0.0.0", "::")
+_GOODBYE_S = 3
+
+
+def serve(
+    study_source: str | Path,
+    store_url: str | Path,
+    host: str = "127.0.0.1",
+    port: int = 8501,
+    workers: int | None = None,
+) -> None:
+    """Serve a study until SIGINT or SIGTERM.
+
+    Prints ``participant: URL`` and ``researcher: URL`` (which opens once) as soon as requests are answered.
+
+    Parameters
+    ----------
+    study_source : str or Path
+        Name of a built-in study, or a study file.
+    store_url : str or Path
+        Where everything goes: a path or a SQLAlchemy URL.
+    port : int
+        0 takes any free one.
+    workers : int, optional
+        Processes that run the robot; by default one per core, at most four.
+
+    Raises
+    ------
+    InputError
+        If the study or the store's address is wrong.
+    ElbowroomError
+        If the store or the port cannot be had.
+    """
+    text = study_text(study_source)
+    study = parse_study(text, where=str(study_source))
+    _check_modes(study_source, text)
+    listener = _listen(host, port)
+    with listener, Store.open(store_url) as store:
+        _run(listener, store, store.add_study(study, text), host, workers)
+
+
+def _check_modes(study_source: str | Path, text: str) -> None:
+    """Find a wrong mode now, not when a participant waits for its lap."""
+    from sim_trials.modes.registry import resolve
+
+    for mode in parse_study(text, where=str(study_source)).modes:
+        resolve(mode)
+
+
+def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, workers: int | None) -> None:
+    import os
+
+    import uvicorn
+
+    from app.server.access_log import LOGGING
+    from app.server.asgi import build_app
+    from app.server.desk import Desk
+    from app.server.laps import LapKeeper
+    from app.server.settings import apply_settings
+
+    apply_settings()
+    laps = LapKeeper(stored.study, store.recordings_folder, workers or min(os.cpu_count() or 1, 4))
+    app = build_app(Desk(stored, store, laps))
+    base = f"http://{_shown(host)}:{listener.getsockname()[1]}"
+    lines = (
+        f"participant: {base}/join/{_new_link(store, stored, 'participant')}",
+        f"researcher: {base}/researcher/{_new_link(store, stored, 'researcher')}",
+    )
+
+    class Server(uvicorn.Server):
+        async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+            await super().startup(sockets)
+            if self.started:
+                print(*lines, sep="\n", flush=True)
+
+    config = uvicorn.Config(
+        app,
+        log_config=LOGGING,
+        timeout_graceful_shutdown=_GOODBYE_S,
+        server_header=False,
+        ws="websockets-sansio",
+        ws_max_size=1 << 20,
+    )
+    _stop_quietly()
+    Server(config).run(sockets=[listener])
+
+
+def _new_link(store: Store, stored: StoredStudy, kind: LinkKind) -> str:
+    from app.server.visitors import new_token
+
+    token = new_token()
+    store.create_link(kind, stored, token_sha256(token), label="elbowroom serve")
+    return token
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    """A socket that listens already, so that a port in use is found before anything else is done."""
+    if not 0 <= port <= 65535:
+        raise InputError(f"--port: {port} is not in 0..65535")
+    try:
+        found = socket.getaddrinfo(host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        family, kind, protocol, _, address = found[0]
+        listener = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise ElbowroomError(f"--host: {host!r} is no address of this machine ({error.strerror})") from None
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        listener.listen(256)
+    except OSError as error:
+        listener.close()
+        raise ElbowroomError(
+            f"cannot serve on {host}:{port}: {(error.strerror or str(error)).lower()}"
+        ) from None
+    listener.set_inheritable(False)
+    return listener
+
+
+def _shown(host: str) -> str:
+    """How a browser on this machine names the host."""
+    if host in _WILDCARDS:
+        return "127.0.0.1"
+    return f"[{host}]" if ":" in host else host
+
+
+def _stop_quietly() -> None:
+    """uvicorn raises the signal that stopped it once more when it is done; by then nothing is left to do."""
+
+    def done(number: int, frame: FrameType | None) -> None:
+        del number, frame
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, done)

@@ -1,0 +1,161 @@
+"""A tiny study on a real server, and requests to it."""
+
+import http.client
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+
+from app.server.desk import Desk
+from app.server.laps import LapKeeper
+from app.server.visitors import PARTICIPANT_COOKIE, admit, new_participant_cookie
+from data.records import Participant
+from data.store import Store
+
+TINY_STUDY = """
+format = 1
+name = "tiny"
+title = "Zweifelhaft"
+seed = 5
+[consent]
+version = "7"
+text = "You will watch a robot."
+[[modes]]
+name = "Zwetschge"
+method = "dls"
+description = "Quitte"
+parameters = { lambda0 = 0.2, sigma_t = 0.25 }
+[[modes]]
+name = "Mirabelle"
+method = "dls"
+description = "Quitte"
+parameters = { lambda0 = 0.6, sigma_t = 0.25 }
+[[questions]]
+name = "Q1"
+wording = "Which method was the smoothest to use?"
+short = "smoothest"
+emphasis = "smoothest"
+levels = 5
+answers = ["A much smoother", "A smoother", "About the same", "B smoother", "B much smoother"]
+[[questions]]
+name = "Q2"
+wording = "Which method felt safest to use?"
+short = "safest"
+levels = 3
+[protocol]
+repetitions = 1
+laps_per_condition = 1
+minimum_exposure_s = 0.5
+"""
+SECRETS = ("Zwetschge", "Mirabelle", "Quitte", "Zweifelhaft", "lambda", "dls", "sigma", "damping")
+"""What no participant's browser may ever receive of the tiny study, in any case of letters."""
+
+
+@dataclass(frozen=True)
+class Reply:
+    """An answer of the server."""
+
+    status: int
+    headers: Mapping[str, str]
+    body: bytes
+
+
+@dataclass(frozen=True)
+class Server:
+    """A server under test, and the store behind it."""
+
+    participant_url: str
+    researcher_url: str
+    store: Store
+    log: Path
+    process: subprocess.Popen[str]
+
+    @property
+    def base(self) -> str:
+        parts = urlsplit(self.participant_url)
+        return f"{parts.scheme}://{parts.netloc}"
+
+    def ask(
+        self,
+        path: str,
+        method: str = "GET",
+        *,
+        cookie: str = "",
+        origin: str | None = "own",
+        content: object = None,
+        headers: Mapping[str, str] | None = None,
+    ) -> Reply:
+        """Send a request, without following a redirect."""
+        sent = dict(headers or {})
+        if cookie:
+            sent["Cookie"] = f"{PARTICIPANT_COOKIE}={cookie}"
+        if origin is not None:
+            sent["Origin"] = self.base if origin == "own" else origin
+        body = None
+        if content is not None:
+            body = json.dumps(content)
+            sent["Content-Type"] = "application/json"
+        connection = http.client.HTTPConnection(urlsplit(self.base).netloc, timeout=60)
+        try:
+            connection.request(method, path, body, sent)
+            answer = connection.getresponse()
+            return Reply(answer.status, dict(answer.getheaders()), answer.read())
+        finally:
+            connection.close()
+
+    def join(self) -> tuple[str, Participant]:
+        """A new participant, whose first comparison is open: the cookie and who it is."""
+        stored = self.store.studies()[0]
+        desk = Desk(stored, self.store, LapKeeper(stored.study, self.store.recordings_folder, 1))
+        cookie = new_participant_cookie(desk, self.participant_url.rpartition("/")[2])
+        assert cookie is not None
+        participant = admit(desk, cookie)
+        self.store.start_comparison(f"{participant.id}.c1", self.store.clock())
+        return cookie, participant
+
+
+Start = Callable[[str], Server]
+
+
+@contextmanager
+def serving(folder: Path, study: str) -> Iterator[Server]:
+    """Run ``elbowroom serve`` on a free port, until the block ends."""
+    (folder / "study.toml").write_text(study, encoding="utf-8")
+    command = [sys.executable, "-m", "app.cli", "serve", "--study", "study.toml", "--store", "study.sqlite"]
+    log = folder / "log.txt"
+    with log.open("w") as errors:
+        process = subprocess.Popen(
+            [*command, "--port", "0", "--workers", "1"],
+            cwd=folder,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            text=True,
+            # The variables of Streamlit and of a proxy must not matter.
+            env={**os.environ, "STREAMLIT_CLIENT_SHOW_ERROR_DETAILS": "full"},
+        )
+    try:
+        assert process.stdout is not None
+        said = dict(
+            line.split(": ", 1) for line in (process.stdout.readline(), process.stdout.readline()) if line
+        )
+        assert list(said) == ["participant", "researcher"], log.read_text()
+        with Store.open(folder / "study.sqlite") as store:
+            yield Server(said["participant"].strip(), said["researcher"].strip(), store, log, process)
+    finally:
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One server for all tests that don't end it."""
+    with serving(tmp_path_factory.mktemp("served"), TINY_STUDY) as running:
+        yield running

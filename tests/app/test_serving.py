@@ -1,0 +1,48 @@
+"""Starting and stopping: one plain line when it can't, no noise when it ends."""
+
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+from .conftest import TINY_STUDY, serving
+
+
+def attempt(folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "app.cli", "serve", "--store", str(folder / "study.sqlite"), *options]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+
+
+def test_a_port_in_use_is_one_line_and_exit_1(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        result = attempt(tmp_path, "--port", str(port))
+    assert result.returncode == 1
+    assert result.stdout == ""
+    assert len(result.stderr.splitlines()) == 1
+    assert f"127.0.0.1:{port}: address already in use" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_host_that_is_none_is_one_line_and_exit_1(tmp_path: Path) -> None:
+    result = attempt(tmp_path, "--host", "no.such.host.invalid")
+    assert result.returncode == 1
+    assert len(result.stderr.splitlines()) == 1
+    assert "no.such.host.invalid" in result.stderr
+
+
+def test_a_study_with_an_unknown_method_is_found_before_anyone_waits_for_its_lap(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(TINY_STUDY.replace('"dls"', '"dsl"', 1))
+    result = attempt(tmp_path, "--study", "study.toml")
+    assert result.returncode == 2
+    assert "'dsl' is not one of" in result.stderr
+    assert not (tmp_path / "study.sqlite").exists()
+
+
+def test_it_stops_cleanly_when_told_to(tmp_path: Path) -> None:
+    with serving(tmp_path, TINY_STUDY) as running:
+        assert running.ask("/healthz").body == b'{"status":"ok"}'
+        running.process.send_signal(signal.SIGINT)
+        assert running.process.wait(timeout=60) == 0
+    assert "Traceback" not in running.log.read_text()

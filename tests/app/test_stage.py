@@ -1,0 +1,147 @@
+"""The stage's modules, run as the browser runs them."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from app.server.lap_wire import pack_lap
+from sim_trials.frames import Frames
+
+from .conftest import Server
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Browser
+
+pytestmark = pytest.mark.browser
+MAZE = "{ left: 0.35, right: -1.045, top: 0.45, bottom: 0.05 }"
+
+
+@pytest.fixture(scope="module")
+def page(chromium: "Browser", server: Server) -> "Iterator[Page]":
+    """A page of the server, to import its modules from."""
+    context = chromium.new_context()
+    opened = context.new_page()
+    opened.goto(f"{server.base}/healthz")
+    yield opened
+    context.close()
+
+
+def run(page: Page, module: str, script: str, argument: object = None) -> object:
+    return page.evaluate(
+        f"async (given) => {{ const m = await import('/stage/{module}.js'); {script} }}", argument
+    )
+
+
+def test_a_lap_arrives_as_it_was_sent(page: Page) -> None:
+    n, direction = 3, np.array([0.0, np.pi / 2, np.pi])
+    frames = Frames(
+        time_s=np.arange(n) / 25,
+        q_rad=np.arange(6 * n).reshape(n, 6) / 10,
+        cursor_m=np.array([[0.35, 0.45], [0.25, 0.45], [0.15, 0.45]]),
+        tilt_deg=np.array([5.0, 10.0, 20.0]),
+        tilt_direction_rad=direction,
+        is_blasting=np.array([False, True, True]),
+        is_enabled=np.array([True, True, True]),
+        speed_m_s=np.array([0.0, 0.1, 0.2]),
+        hand_m=np.array([[0.3, 0.4], [0.2, 0.4], [0.1, 0.4]]),
+        force_share=np.array([0.0, 0.5, 1.0]),
+    )
+    content = list(pack_lap(frames, 25.0, 0.08, "stuck"))
+    found = run(
+        page,
+        "lap",
+        """const lap = new m.Lap(new Uint8Array(given).buffer);
+        const states = [0, 0.04, 0.06, 0.08].map((t) => lap.at(t));
+        return { outcome: lap.outcome, duration: lap.duration, states };""",
+        content,
+    )
+    assert isinstance(found, dict)
+    assert found["outcome"] == "stuck"
+    assert found["duration"] == pytest.approx(0.08)
+    first, second, between, last = found["states"]
+    assert [first["spraying"], second["spraying"], last["moving"]] == [False, True, True]
+    assert between["y"] == pytest.approx(0.2)
+    assert between["pull"] == pytest.approx(0.75)
+    assert last["q"] == pytest.approx([1.2, 1.3, 1.4, 1.5, 1.6, 1.7])
+    assert last["hand"] == pytest.approx({"y": 0.1, "z": 0.4})
+    for state, tilt, angle in zip((first, second, last), (5.0, 10.0, 20.0), direction, strict=True):
+        assert state["tilt"] == pytest.approx(tilt)
+        # The screen's y points down: up on the wall is a negative angle there.
+        assert np.cos(state["direction"]) == pytest.approx(np.cos(angle), abs=1e-6)
+        assert np.sin(state["direction"]) == pytest.approx(-np.sin(angle), abs=1e-6)
+
+
+def painted(page: Page, strokes: list[tuple[float, float]]) -> list[int]:
+    """Opacity in the middle of the top edge after strokes along it: (speed, how often)."""
+    found = run(
+        page,
+        "path",
+        f"""const {{ Frame }} = await import('/stage/frame.js');
+        const path = new m.Path({{ solidUpTo: 0.15, faintFrom: 0.3 }});
+        path.fit(new Frame({MAZE}, 880, 300), 1);
+        const out = [];
+        for (const [speed, times] of given) {{
+          for (let i = 0; i < times; i++) {{
+            path.sprayTo(-0.2, 0.45, speed);
+            path.sprayTo(-0.5, 0.45, speed);
+            path.lift();
+          }}
+          const frame = path.frame;
+          const at = [Math.round(frame.x(-0.35)), Math.round(frame.y(0.45)), 1, 1];
+          out.push(path.context.getImageData(...at).data[3]);
+        }}
+        return out;""",
+        strokes,
+    )
+    assert isinstance(found, list)
+    return found
+
+
+def test_the_path_is_solid_when_slow_and_faint_when_fast(page: Page) -> None:
+    solid, middle, faint = (painted(page, [(speed, 1)])[0] for speed in (0.15, 0.225, 0.30))
+    assert solid == pytest.approx(0.97 * 255, abs=1)
+    assert middle == pytest.approx((0.97 + 0.20) / 2 * 255, abs=1)
+    assert faint == pytest.approx(0.20 * 255, abs=1)
+
+
+def test_strokes_never_add_up_and_the_strongest_stays(page: Page) -> None:
+    once, again, strong, weak_after = painted(page, [(0.3, 1), (0.3, 9), (0.1, 1), (0.3, 1)])
+    assert once == again
+    assert strong == weak_after > again
+
+
+def test_the_cursor_changes_its_look_with_two_degrees_of_hysteresis(page: Page) -> None:
+    looks = run(
+        page,
+        "cursor",
+        "const t = new m.TiltLook({ greenBelow: 8, redFrom: 16 }); return given.map((deg) => t.at(deg));",
+        [7.9, 8, 6.5, 5.9, 16, 14.5, 13.9, 5],
+    )
+    assert looks == ["straight", "little", "little", "straight", "too", "too", "little", "straight"]
+
+
+def test_the_drawn_arm_ends_where_the_simulated_one_does(page: Page) -> None:
+    from sim_trials.kinematics import HANDLE_OFFSET_M, NOZZLE_LENGTH_M, handle_pose
+
+    q, pose = np.array([3.4504, -1.4226, 1.7185, -0.2959, 1.8796, 0.3]), np.empty((4, 4))
+    handle_pose(q, pose)
+    tip = pose[:3, 3] + (NOZZLE_LENGTH_M - HANDLE_OFFSET_M) * pose[:3, 2]
+    assert run(page, "arm", "return m.nozzleTip(given);", q.tolist()) == pytest.approx(tip.tolist())
+
+
+@pytest.mark.parametrize(
+    ("watched", "said"),
+    [
+        ({"A": 0, "B": 0}, "20 and 20"),
+        ({"A": 25, "B": 7.5}, "13 of B"),
+        ({"A": 19.2, "B": 20}, "one of A"),
+        ({"A": 20, "B": 20}, "open"),
+    ],
+)
+def test_the_unlock_text_says_how_long_is_missing(page: Page, watched: dict[str, float], said: str) -> None:
+    texts = "{ both: '{a} and {b}', one: '{seconds} of {slot}', one_second: 'one of {slot}', open: 'open' }"
+    assert run(page, "unlock", f"return new m.Unlock(20, {texts}).text(given);", watched) == said
