@@ -105,7 +105,9 @@ def _separation(modes: tuple[str, ...], wins: NDArray[np.int64], ties: NDArray[n
     """
     n, label = connected_components(csr_array(wins + ties), directed=True, connection="strong")
     said = []
-    for g in range(n if n > 1 else 0):
+    groups = sorted(range(n if n > 1 else 0), key=lambda g: np.count_nonzero(label == g))
+    # Of two groups the smaller says it all: what one won, the other lost.
+    for g in groups[:1] if n == 2 else groups:
         inside = label == g
         group = [mode for mode, is_in in zip(modes, inside, strict=True) if is_in]
         won, lost = wins[np.ix_(inside, ~inside)].sum(), wins[np.ix_(~inside, inside)].sum()

@@ -6,7 +6,8 @@ units of the smallest ratio that people notice (Weber's law), and the result is 
 question weighs stands in the study file (``rehearsal``); how much it matters to this person, and what
 this person likes besides, is the person's taste. Ties, strong preferences and disagreement follow.
 
-All numbers here are untuned, for demonstration and rehearsal: no answer of a rater is evidence.
+All numbers here were chosen so that ties, strong preferences and disagreement all occur, and are not
+fitted to people: for demonstration and rehearsal, no answer of a rater is evidence.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,11 +19,11 @@ from data.answers import Answer
 from data.errors import one_of
 from data.study import Question, Study
 
-WEBER_FRACTION = 0.25
+WEBER_FRACTION = 0.4
 """Ratio of two magnitudes, as a log, that counts as one unit of felt difference.
 
-People tell forces apart from about 7-10 % on (Jones 1989) when they attend to nothing else; the
-value is larger since a lap is long and the task takes attention. Untuned.
+People tell forces apart from about 7-10 % on (Jones 1989) when they attend to nothing else. With
+that, simulated people would never disagree: the modes differ by far more. Chosen so that they do.
 """
 STUCK_UNIT = 0.5
 """Difference in the share of laps that ended stuck that counts as one unit. Untuned."""
@@ -125,9 +126,9 @@ def answer(
     """This person's answer to one question after one comparison.
 
     The leaning towards A is the weighted sum of felt differences plus taste, side bias and logistic
-    noise of scale 0.5, cut into the levels of the question's scale by the person's own thresholds.
+    noise of scale 0.6, cut into the levels of the question's scale by the person's own thresholds.
     """
-    leaning = rater.side_bias + float(rng.logistic(0.0, 0.5))
+    leaning = rater.side_bias + float(rng.logistic(0.0, 0.6))
     for metric, taste in rater.taste.items():
         weight = question.rehearsal.get(metric, 0.0) * rater.attention[metric] + taste
         leaning += weight * felt_difference(a, b, metric)

@@ -48,8 +48,8 @@ def worth_chart(question: QuestionAtAGlance) -> alt.Chart:
     rows = pd.DataFrame([asdict(standing) for standing in question.standings])
     rows["first"] = rows["p_best"].map(percent)
     rows["likely"] = rows["p_best"] >= LIKELY
-    top = _top(rows)
-    return _intervals(rows, "worth", top, len(rows), ".1f", rule_at=1 / len(rows), text="first")
+    # The same axis for every question, so that they can be compared at a glance.
+    return _intervals(rows, "worth", 1.0, len(rows), "~g", rule_at=1 / len(rows), text="first")
 
 
 def stuck_chart(rates: Sequence[StuckAtAGlance]) -> alt.Chart:
@@ -57,13 +57,8 @@ def stuck_chart(rates: Sequence[StuckAtAGlance]) -> alt.Chart:
     rows = pd.DataFrame([asdict(rate) for rate in rates])
     rows["of"] = [f"{rate.stuck} of {rate.comparisons}" for rate in rates]
     rows["likely"] = False
-    top = _top(rows)
+    top = next(end for end in (0.4, 0.6, 0.8, 1.0) if rows["high"].max() <= end or end == 1.0)
     return _intervals(rows, "rate", top, len(rows), ".0%", rule_at=None, text="of")
-
-
-def _top(rows: pd.DataFrame) -> float:
-    """Where the axis ends."""
-    return next(top for top in (0.4, 0.6, 0.8, 1.0) if rows["high"].max() <= top or top == 1.0)
 
 
 def _intervals(
@@ -72,7 +67,8 @@ def _intervals(
     colours = palette()
     scale = alt.Scale(domain=[0, top], nice=False)
     axis = alt.Axis(
-        format=axis_format, tickCount=4, grid=True, gridColor=colours.line, domain=False, ticks=False,
+        format=axis_format, values=[0, top / 2, top], labelFlush=False, grid=True,
+        gridColor=colours.line, domain=False, ticks=False,
         labelColor=colours.ink_3, labelFontSize=12, title=None,
     )  # fmt: skip
     y = alt.Y(
@@ -107,6 +103,10 @@ def _intervals(
         )
     return (
         alt.layer(*layers)
-        .properties(height=_ROW_PX * n + _AXIS_PX, padding={"left": 4, "right": 4, "top": 4, "bottom": 4})
+        .properties(
+            height=_ROW_PX * n + _AXIS_PX,
+            padding={"left": 4, "right": 4, "top": 4, "bottom": 4},
+            background="transparent",
+        )
         .configure_view(strokeWidth=0)
     )

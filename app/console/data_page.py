@@ -8,7 +8,7 @@ from pathlib import Path
 import streamlit as st
 
 from app.console.evidence import includes_simulated, simulated_switch
-from app.console.style import headline, table
+from app.console.style import card, headline, table
 from app.server.desk import Desk
 from data.errors import ElbowroomError
 from data.export import export_study
@@ -20,10 +20,10 @@ def show(desk: Desk) -> None:
     """Export and audit log."""
     headline("Data")
     simulated_switch(desk)
-    with st.container(border=True):
+    with card("export"):
         st.subheader("Export", anchor=False)
         _export(desk)
-    with st.container(border=True):
+    with card("audit"):
         st.subheader("Audit log", anchor=False)
         st.caption(desk.store.verify_audit().sentence)
         entries = desk.store.audit_log()[: -_LOG_ROWS - 1 : -1]

@@ -4,7 +4,7 @@ from urllib.parse import urlsplit
 
 import streamlit as st
 
-from app.console.style import headline, table
+from app.console.style import card, headline, table
 from app.server.desk import Desk
 from app.server.visitors import new_token
 from data.store import Link, token_sha256
@@ -16,7 +16,7 @@ _KIND_NAMES = {"participant": "any number", "personal": "one participant", "rese
 def show(desk: Desk) -> None:
     """New links at the top; they are shown once, since only their hashes are kept."""
     headline("Links")
-    with st.container(border=True):
+    with card("new"):
         st.subheader("New links", anchor=False)
         kind = st.radio("For whom", list(_KINDS), horizontal=True)
         label, number = st.columns([0.7, 0.3])
@@ -34,7 +34,7 @@ def show(desk: Desk) -> None:
             desk.store.log("researcher", "make links", {"kind": _KINDS[kind], "links": str(len(tokens))})
             st.caption("Copy them now: they can't be shown again.")
             st.code("\n".join(f"{_base()}/join/{token}" for token in tokens), language=None)
-    with st.container(border=True):
+    with card("given-out"):
         st.subheader("Links given out", anchor=False)
         _given_out(desk)
 

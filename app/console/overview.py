@@ -6,7 +6,7 @@ import streamlit as st
 
 from app.console.charts import stuck_chart, worth_chart
 from app.console.evidence import Evidence, evidence, includes_simulated, simulated_switch
-from app.console.style import headline, key_figures, table
+from app.console.style import card, headline, key_figures, table
 from app.console.unblinding import unblind_button
 from app.participant.progress import Progress
 from app.server.desk import Desk
@@ -53,11 +53,11 @@ def _figures(desk: Desk) -> None:
         )
     )
     wide, narrow = st.columns([0.69, 0.31], gap="small")
-    with wide.container(border=True):
+    with card("ranking", wide):
         _ranking(found)
-    with narrow.container(border=True):
+    with card("stuck", narrow):
         _stuck(found)
-    with st.container(border=True):
+    with card("participants"):
         st.subheader("Participants", anchor=False)
         _participants(desk)
 

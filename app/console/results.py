@@ -4,7 +4,7 @@ import streamlit as st
 
 from app.console.charts import percent, worth_chart
 from app.console.evidence import evidence, simulated_switch
-from app.console.style import headline, table
+from app.console.style import card, headline, table
 from app.server.desk import Desk
 
 
@@ -21,7 +21,7 @@ def show(desk: Desk) -> None:
     if not found.questions:
         st.markdown(found.why_none)
     for question in found.questions:
-        with st.container(border=True):
+        with card(question.name):
             st.subheader(f"{question.name}: {question.wording}", anchor=False)
             st.caption(f"{question.responses} answers")
             if not question.standings:
@@ -39,7 +39,7 @@ def show(desk: Desk) -> None:
                     numbers=(1, 2, 3),
                 )
     if found.stuck:
-        with st.container(border=True):
+        with card("stuck"):
             st.subheader("Robot stuck, per comparison", anchor=False)
             table(
                 ("Mode", "Comparisons", "Stuck", "Rate", "94 % interval"),

@@ -5,6 +5,7 @@ from html import escape
 from pathlib import Path
 
 import streamlit as st
+from streamlit.delta_generator import DeltaGenerator
 
 _HERE = Path(__file__).resolve().parent
 LOGO = _HERE / "logo.svg"
@@ -19,6 +20,12 @@ def headline(title: str, chips: Sequence[str] = ()) -> None:
     """The page's title with small facts beside it."""
     shown = "".join(f'<span class="chip">{escape(chip)}</span>' for chip in chips)
     st.html(f'<div class="headline"><h1>{escape(title)}</h1>{shown}</div>')
+
+
+def card(name: str, place: DeltaGenerator | None = None) -> DeltaGenerator:
+    """A bordered surface to write on; ``name`` is unique on the page, ``place`` a column to put it in."""
+    key = f"card-{name}"
+    return place.container(border=True, key=key) if place else st.container(border=True, key=key)
 
 
 def key_figures(figures: Sequence[tuple[str, str, str]]) -> None:
