@@ -1,5 +1,6 @@
 """From responses, stored or collected, to a fitted and written report."""
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -71,6 +72,8 @@ def make_report(request: Request) -> ReportResult:
         written = write_report(
             evidence.table, fitted, request.out, stuck=evidence.stuck, study=evidence.study, progress=report
         )
+    for warning in fitted.warnings:
+        print(f"note: {warning}", file=sys.stderr)
     print_ranking(fitted, Console(), is_simulated=evidence.table.is_simulated)
     return written
 

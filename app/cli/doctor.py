@@ -59,11 +59,11 @@ def _mujoco() -> Finding:
 def _cpp_compiler() -> Finding:
     compiler = shutil.which("g++") or shutil.which("clang++")
     if compiler:
-        return Finding(True, "C++ compiler found: the pymc engine runs at full speed")
+        return Finding(True, "C++ compiler found: PyTensor runs at full speed")
     return Finding(
         None,
-        "no C++ compiler: `--engine pymc` works but is very slow (about 100x); "
-        "the default engine, fast, does not need one",
+        "no C++ compiler: what PyTensor evaluates by itself is slow, such as the pymc engine's pointwise "
+        "log-likelihoods; rankings need no compiler, whichever the engine",
     )
 
 

@@ -6,8 +6,6 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from app.studies import open_study
-from data.schedule import plan_session
 from data.study_file import built_in_studies
 
 cli = typer.Typer(help="Built-in studies, and the check of a study file.")
@@ -20,6 +18,8 @@ def list_() -> None:
 
     Example: elbowroom study list
     """
+    from app.studies import open_study
+
     for name in built_in_studies():
         study = open_study(name).study
         print(f"{name}  {study.title} ({len(study.modes)} modes, {len(study.questions)} questions)")
@@ -31,6 +31,9 @@ def check(source: Source) -> None:
 
     Example: elbowroom study check my_study.toml
     """
+    from app.studies import open_study
+    from data.schedule import plan_session
+
     study = open_study(source).study
     comparisons = len(plan_session(study, 1))
     print(
@@ -46,6 +49,8 @@ def show(source: Source = "carmichael2017") -> None:
 
     Example: elbowroom study show carmichael2017
     """
+    from app.studies import open_study
+
     opened = open_study(source)
     study, console = opened.study, Console()
     console.print(f"[bold]{study.title}[/bold]  {study.name}, version {study.version}", highlight=False)

@@ -2,6 +2,7 @@
 
 import io
 
+import pandas as pd
 import pytest
 from rich.cells import cell_len
 from rich.console import Console
@@ -14,7 +15,6 @@ from data.responses import QuestionScale, ResponseTable
 
 @pytest.fixture(scope="module")
 def preferences():
-    pandas = pytest.importorskip("pandas")
     modes = ("M1", "a mode with a [red]name[/red] much longer than its column", "M3")
     rows = [
         (f"p{person}", question, a, b, "A>B", 1, f"c{person}{k}", 1, "human", False)
@@ -26,7 +26,7 @@ def preferences():
     columns = ["participant", "question", "mode_a", "mode_b", "response", "count", "comparison", "repetition",
                "source", "check"]  # fmt: skip
     scales = tuple(QuestionScale(name, f"{name} in short", "?", 2) for name in ("Q1", "Q2"))
-    table = ResponseTable(pandas.DataFrame(rows, columns=columns), modes, scales, True, False, "0" * 64, "t")
+    table = ResponseTable(pd.DataFrame(rows, columns=columns), modes, scales, True, False, "0" * 64, "t")
     return fit(table, FitSettings(draws=400, tune=300, chains=2))
 
 

@@ -12,6 +12,7 @@ from analysis.counts import count_responses
 from analysis.diagnostics import convergence
 from analysis.engines import fast, nuts
 from analysis.engines.density import packed
+from analysis.engines.pymc_engine import compiler_note
 from analysis.fit import fit
 from analysis.model import Model, Problem
 from analysis.results import Draws, FitSettings, QuestionFit
@@ -273,3 +274,14 @@ assert not heavy, heavy
 def test_the_pymc_engine_agrees_with_the_fast_one(simulated):
     table = simulated(3, participants=8)
     assert_alike(fit(table, SETTINGS).questions[0], fit(table, replace(SETTINGS, engine="pymc")).questions[0])
+
+
+def test_a_missing_compiler_is_said_with_what_it_slows_down(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    (note,) = compiler_note()
+    assert "No C++ compiler" in note
+    assert "sampling keeps its speed" in note
+    for name in ("g++", "clang++"):
+        (tmp_path / name).write_text("")
+        (tmp_path / name).chmod(0o755)
+        assert compiler_note() == ()

@@ -6,7 +6,9 @@ import xml.etree.ElementTree as ElementTree
 from collections import Counter
 
 import numpy as np
+import pandas as pd
 import pytest
+from PIL import Image
 
 from analysis.answer_shares import answer_shares
 from analysis.figures.labels import distinct, fitted, isolated, one_line, percent, shortened, width_px
@@ -69,13 +71,12 @@ def invented(n_modes, n_questions):
     from analysis.summaries import mode_results, pair_results
     from data.responses import QuestionScale, ResponseTable
 
-    pandas = pytest.importorskip("pandas")
     rng = np.random.default_rng(3)
     modes = tuple(f"m{k}" for k in range(n_modes))
     fits = []
     for k in range(n_questions):
         scale = QuestionScale(f"Q{k}", f"short {k}", "?", 3)
-        rows = pandas.DataFrame(
+        rows = pd.DataFrame(
             [("p", scale.name, modes[0], modes[1], "A>B", 1, "c", 1, "human", False)],
             columns=["participant", "question", "mode_a", "mode_b", "response", "count", "comparison",
                      "repetition", "source", "check"],
@@ -135,9 +136,8 @@ def test_the_shares_of_a_pair_do_not_depend_on_the_side_it_was_shown_on(study_ca
 
 
 def test_a_png_has_two_hundred_dots_to_the_inch(study_case):
-    image = pytest.importorskip("PIL.Image")
     drawing = draw_worth(study_case.fit.questions, study_case.fit.modes)[0]
-    with image.open(io.BytesIO(drawing.png)) as png:
+    with Image.open(io.BytesIO(drawing.png)) as png:
         assert png.info["dpi"][0] == pytest.approx(200, abs=0.5)
         assert png.width == pytest.approx(666 / 96 * 200, abs=1.5)
 
