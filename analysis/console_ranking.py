@@ -138,7 +138,7 @@ def _about_the_fit(fit: Fit) -> list[str]:
     if fit.rhat_max == fit.rhat_max:
         state = "converged" if fit.converged else "NOT converged"
         said.append(
-            f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat {fit.rhat_max:.2f}, "
+            f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat {fit.rhat_max:.3f}, "
             f"ESS {fit.ess_min:,.0f}, divergences {fit.divergences:,}."
         )
     return said

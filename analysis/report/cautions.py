@@ -130,7 +130,7 @@ def _about_checks(checks: int) -> list[str]:
 def _about_convergence(fit: Fit) -> list[str]:
     if np.isnan(fit.rhat_max):
         return []
-    figures = f"R-hat {fit.rhat_max:.2f}, ESS {fit.ess_min:,.0f}, {_divergences(fit)}"
+    figures = f"R-hat {fit.rhat_max:.3f}, ESS {fit.ess_min:,.0f}, {_divergences(fit)}"
     if fit.converged:
         return [f"The sampler converged: {figures}."]
     failed = [isolated(q.question.name) for q in fit.questions if _sampled(q) and not q.ranked]

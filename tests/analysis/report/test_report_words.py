@@ -84,4 +84,4 @@ def test_a_fit_that_did_not_converge_says_so(study_case):
     fit = replace(study_case.fit, converged=False, rhat_max=1.3)
     said = " ".join(cautions(study_case.table, fit, findings(fit), None, 0))
     assert "The sampler did not converge" in said
-    assert "R-hat 1.30" in said
+    assert "R-hat 1.300" in said
