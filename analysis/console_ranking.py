@@ -1,5 +1,6 @@
 """The ranking in a terminal: worths, intervals as bars, chances and plain words."""
 
+import math
 from collections.abc import Sequence
 
 from rich.console import Console
@@ -41,9 +42,12 @@ def print_ranking(fit: Fit, console: Console, *, is_simulated: bool = False) -> 
         console.print()
         _print_question(found, console, signs, top, min(22, width))
     console.print()
-    key = f"{signs[0] * 3} 94 %, {signs[1] * 3} 50 %, {signs[2]} mean, {signs[3]} no preference"
-    console.print(Text(f"{key} ({1 / len(fit.modes):.2f}); bars from 0 to {top:.2g}", style="dim"))
-    for sentence in _about_the_fit(fit):
+    said = _about_the_sampler(fit)
+    if any(question.ranked for question in fit.questions):
+        key = f"{signs[0] * 3} 94 %, {signs[1] * 3} 50 %, {signs[2]} mean, {signs[3]} no preference"
+        first = f"“First” is the chance to rank first; from {100 * LIKELY:.0f} % on it is called likely."
+        said = [f"{key} ({1 / len(fit.modes):.2f}); bars from 0 to {top:.2g}", first, *said]
+    for sentence in said:
         console.print(Text(_printable(sentence, console), style="dim"))
 
 
@@ -133,12 +137,11 @@ def _can_print(text: str, console: Console) -> bool:
     return True
 
 
-def _about_the_fit(fit: Fit) -> list[str]:
-    said = [f"“First” is the chance to rank first; from {100 * LIKELY:.0f} % on it is called likely."]
-    if fit.rhat_max == fit.rhat_max:
-        state = "converged" if fit.converged else "NOT converged"
-        said.append(
-            f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat {fit.rhat_max:.3f}, "
-            f"ESS {fit.ess_min:,.0f}, divergences {fit.divergences:,}."
-        )
-    return said
+def _about_the_sampler(fit: Fit) -> list[str]:
+    if math.isnan(fit.rhat_max):
+        return []
+    state = "converged" if fit.converged else "NOT converged"
+    return [
+        f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat {fit.rhat_max:.3f}, "
+        f"ESS {fit.ess_min:,.0f}, divergences {fit.divergences:,}."
+    ]
