@@ -142,7 +142,7 @@ class Stuck(Part):
 class Controller(Part):
     """The admittance loop around the mode (Carmichael, Aldini, Liu 2017, Figure 3).
 
-    The paper gives no gains. These follow from prototypes on the simulated UR10 and are untuned
+    The paper gives no gains. These were chosen on the simulated UR10 and are untuned
     for any real robot.
     """
 
