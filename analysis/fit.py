@@ -5,6 +5,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol, get_args
 
+import numpy as np
+
 from analysis.counts import Counts, count_responses
 from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW
 from analysis.identifiability import Examination, examine
@@ -83,7 +85,7 @@ def fit(table: ResponseTable, settings: FitSettings | None = None, progress: Pro
         priors=priors(settings, {q.levels for q in table.questions}, is_hierarchical),
         rhat_max=max((q.rhat_max for q in fits if q.draws is not None), default=math.nan),
         ess_min=min((q.ess_min for q in fits if q.draws is not None), default=math.nan),
-        divergences=sum(q.divergences for q in fits),
+        divergences=_divergences(fits, settings),
         converged=all(q.ranked for q in fits if q.draws is not None),
         ranked=all(q.ranked for q in fits),
         warnings=_about_the_whole(table, settings),
@@ -97,6 +99,8 @@ def _validate(table: ResponseTable, settings: FitSettings) -> None:
     ):
         if given not in valid:
             raise one_of(what, given, valid)
+    if settings.engine == "gibbs" and settings.link != "cumulative":
+        raise InputError(f"link: {settings.link} is not known to the engine gibbs; valid: cumulative")
     if not (math.isfinite(settings.prior_sd) and settings.prior_sd > 0):
         raise InputError(f"prior_sd: {settings.prior_sd!r} is no positive number")
     if not 0 < settings.target_accept < 1:
@@ -226,6 +230,14 @@ def _question_fit(prepared: _Prepared, modes: tuple[str, ...], raw: Draws | None
         parameters=parameter_results(draws),
         warnings=said,
     )
+
+
+def _divergences(fits: Sequence[QuestionFit], settings: FitSettings) -> int:
+    """Draws that diverged; the pymc engine samples the questions together, so theirs are the same draws."""
+    diverging = [q.draws.diverging for q in fits if q.draws is not None]
+    if settings.engine == "pymc" and diverging:
+        return int(np.any(diverging, axis=0).sum())
+    return sum(q.divergences for q in fits)
 
 
 def _about_the_whole(table: ResponseTable, settings: FitSettings) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from analysis.counts import Counts
+from analysis.figures.labels import isolated
 
 FEW_COMPARISONS = 10
 """Fewer comparisons of a mode than this bring a warning. Untuned: a day's pilot, not a study."""
@@ -65,7 +66,7 @@ def examine(
     few = [mode for mode, n in zip(modes, compared.sum(axis=1), strict=True) if n < FEW_COMPARISONS]
     if few:
         warnings.append(
-            f"Few data: {_listed(few)} {_are(few)} in fewer than {FEW_COMPARISONS} comparisons; "
+            f"Few data: {_named(few)} {_are(few)} in fewer than {FEW_COMPARISONS} comparisons; "
             "the ranking rests on the prior as much as on the answers."
         )
     if side_effect:
@@ -87,12 +88,12 @@ def _between(groups: list[list[str]], modes: tuple[str, ...]) -> tuple[Pair, ...
 def _refusal(counts: Counts, groups: list[list[str]], missing: tuple[Pair, ...]) -> str:
     if counts.n == 0:
         return "There are no answers to this question."
-    needed = f"Missing: {_listed([f'{a} against {b}' for a, b in missing], 'or')}"
+    needed = f"Missing: {_listed([f'{isolated(a)} against {isolated(b)}' for a, b in missing], 'or')}"
     unseen = [group[0] for group in groups if len(group) == 1]
     if len(unseen) == len(groups) - 1:
         was = "was" if len(unseen) == 1 else "were"
-        return f"{_listed(unseen)} {was} never compared with another mode. {needed}."
-    parts = "; ".join(_listed(group) for group in groups)
+        return f"{_named(unseen)} {was} never compared with another mode. {needed}."
+    parts = "; ".join(_named(group) for group in groups)
     return f"The modes fall into {len(groups)} groups never compared with each other: {parts}. {needed}."
 
 
@@ -115,7 +116,7 @@ def _separation(modes: tuple[str, ...], wins: NDArray[np.int64], ties: NDArray[n
         if drawn or (won and lost):
             continue
         said.append(
-            f"{_listed(group)} {'won' if won else 'lost'} every comparison with the other modes: "
+            f"{_named(group)} {'won' if won else 'lost'} every comparison with the other modes: "
             "how far they are apart rests on the prior."
         )
     return said
@@ -138,6 +139,10 @@ def _sides(counts: Counts) -> list[str]:
         "No pair was shown with its sides exchanged: the side effect is told from the modes only by how "
         "pairs fit together. If A and B mean nothing here, a model without side effect is meant."
     ]
+
+
+def _named(modes: list[str]) -> str:
+    return _listed([isolated(mode) for mode in modes])
 
 
 def _listed(names: list[str], last: str = "and") -> str:

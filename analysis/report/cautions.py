@@ -55,7 +55,10 @@ def _about_the_source(table: ResponseTable, study: Study | None) -> list[str]:
 def _about_the_number(fit: Fit) -> list[str]:
     people = max((q.n_participants for q in fit.questions), default=0)
     if 1 < people < FEW_PARTICIPANTS:
-        return [f"{people} participants are few: more could change the order."]
+        return [
+            f"{people} participants are few: more could change the order. "
+            "“elbowroom power” tells how many are needed."
+        ]
     return []
 
 
@@ -124,7 +127,12 @@ def _about_sides(fit: Fit) -> list[str]:
 
 
 def _about_checks(checks: int) -> list[str]:
-    return [f"{checks:,} answers to attention checks are left out of the model."] if checks else []
+    if not checks:
+        return []
+    answers = (
+        "1 answer to an attention check is" if checks == 1 else f"{checks:,} answers to attention checks are"
+    )
+    return [f"{answers} left out of the model."]
 
 
 def _about_convergence(fit: Fit) -> list[str]:
@@ -138,7 +146,9 @@ def _about_convergence(fit: Fit) -> list[str]:
 
 
 def _divergences(fit: Fit) -> str:
-    return "no divergences" if fit.divergences == 0 else f"{fit.divergences:,} divergent draws"
+    if fit.divergences == 0:
+        return "no divergences"
+    return f"{fit.divergences:,} divergent draw{'' if fit.divergences == 1 else 's'}"
 
 
 def _sampled(question: QuestionFit) -> bool:

@@ -15,6 +15,7 @@ from analysis.report import page as pages
 from analysis.report.findings import findings, lead, listed
 from analysis.report.methods import methods, references
 from analysis.report.page import Page, Section
+from analysis.report.summary import known_comparisons
 from analysis.results import Fit
 from analysis.stuck import StuckRate, stuck_contrasts
 from data.responses import ResponseTable
@@ -78,10 +79,10 @@ def _subtitle(table: ResponseTable, fit: Fit, study: Study | None) -> str:
     title = one_line(study.title if study is not None else table.title)
     version = f", version {one_line(study.version)}" if study is not None else ""
     people = rows.loc[rows["participant"] != "", "participant"].nunique()
-    shown = rows.loc[rows["comparison"] != "", ["comparison"]].nunique().iloc[0]
+    shown = known_comparisons(rows)
     counts = [
         *([_counted(people, "participant")] if table.has_participants and people else []),
-        *([_counted(int(shown), "comparison")] if shown else []),
+        *([_counted(shown, "comparison")] if shown else []),
         _counted(int(rows["count"].sum()), "answer"),
         _counted(len(fit.modes), "mode"),
     ]

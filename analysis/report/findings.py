@@ -112,7 +112,7 @@ def listed(parts: Sequence[str]) -> str:
 
 def _one_question(found: Finding) -> list[Phrase]:
     if found.reading == "not ranked":
-        return [Phrase("The answers cannot rank the modes. ", True), Phrase(f"{found.question.reason} ")]
+        return [Phrase(f"{_no_ranking([found])}. ", True), Phrase(f"{found.question.reason} ")]
     first, rival = isolated(found.first), isolated(found.rival)
     above = percent_in_words(found.above_rival)
     if found.reading == "likely":
@@ -139,7 +139,9 @@ def _opening(found: Sequence[Finding], likely: Sequence[Finding]) -> str:
         return "No mode comes first on every question."
     if len(likely) == len(found):
         return "One mode is likely first on every question."
-    return "Some questions have a likely first place, others are open."
+    if any(f.reading == "open" for f in found):
+        return "Some questions have a likely first place, others are open."
+    return "Every question that could be ranked has a likely first place."
 
 
 def _likely_ones(likely: Sequence[Finding]) -> list[Phrase]:
@@ -185,12 +187,23 @@ def _unranked_ones(unranked: Sequence[Finding], total: int) -> list[Phrase]:
         return []
     if len(unranked) == total:
         return [
-            Phrase("The answers cannot rank the modes on any question. ", True),
+            Phrase(f"{_no_ranking(unranked)} on any question. ", True),
             Phrase(f"{unranked[0].question.reason} "),
         ]
     names = listed([f"“{f.label}”" for f in unranked[:_MOST_NAMED]])
     more = f" and {len(unranked) - _MOST_NAMED} more" if len(unranked) > _MOST_NAMED else ""
     return [Phrase(f"There is no ranking for {names}{more}; the reason stands below. ")]
+
+
+def _no_ranking(unranked: Sequence[Finding]) -> str:
+    """What failed: the answers, or the sampler."""
+    if any(f.question.draws is not None for f in unranked):
+        return "The modes are not ranked"
+    return "The answers cannot rank the modes"
+
+
+def _more_modes(n: int) -> str:
+    return "1 more mode" if n == 1 else f"{n} more modes"
 
 
 def _stuck_sentence(stuck: Sequence[StuckRate]) -> str:
@@ -201,7 +214,7 @@ def _stuck_sentence(stuck: Sequence[StuckRate]) -> str:
     said = [f"in {r.stuck} of {r.comparisons} with {isolated(r.mode)}" for r in some[:_MOST_STUCK_NAMED]]
     said[0] = said[0].replace(" with ", " comparisons with ", 1)
     if len(some) > _MOST_STUCK_NAMED:
-        said.append(f"in fewer with {len(some) - _MOST_STUCK_NAMED} more modes")
+        said.append(f"at no higher rate with {_more_modes(len(some) - _MOST_STUCK_NAMED)}")
     if none:
         names = [isolated(r.mode) for r in none]
         said.append(f"in none with {listed(names) if len(names) <= _MOST_NAMED else f'{len(names)} modes'}")

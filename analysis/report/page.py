@@ -263,7 +263,7 @@ def diagnostics_table(fit: Fit) -> Table:
             one_line(q.question.name),
             str(q.question.levels),
             f"{q.n:,}",
-            f"{q.n_participants:,}" or "",
+            f"{q.n_participants:,}" if q.n_participants else "",
             "" if isnan(q.rhat_max) else f"{q.rhat_max:.3f}",
             "" if isnan(q.ess_min) else f"{q.ess_min:,.0f}",
             f"{q.divergences:,}",

@@ -7,6 +7,8 @@ from dataclasses import asdict
 from importlib import metadata
 from pathlib import Path
 
+import pandas as pd
+
 from analysis.report.tables import neutralised_names
 from analysis.results import Fit
 from data.responses import ResponseTable
@@ -32,12 +34,18 @@ def versions(engine: str) -> dict[str, str]:
     return found
 
 
+def known_comparisons(rows: pd.DataFrame) -> int:
+    """How many comparisons responses name; people's may be numbered alike."""
+    named = rows.loc[rows["comparison"] != "", ["participant", "comparison", "repetition"]]
+    return len(named.drop_duplicates())
+
+
 def summarise(
     table: ResponseTable, fit: Fit, study: Study | None, cautions: Sequence[str], checks: int
 ) -> dict[str, Json]:
     """The summary as plain values; nan and infinity become null."""
     rows = table.rows[~table.rows["check"].astype(bool)]
-    comparisons = rows.loc[rows["comparison"] != "", "comparison"].nunique()
+    comparisons = known_comparisons(rows)
     people = rows.loc[rows["participant"] != "", "participant"].nunique()
     warnings = [*fit.warnings, *(f"{q.question.name}: {w}" for q in fit.questions for w in q.warnings)]
     if changed := neutralised_names(fit):
@@ -58,7 +66,7 @@ def summarise(
         "data_sha256": table.sha256,
         "counts": {
             "participants": int(people),
-            "comparisons": int(comparisons) or None,
+            "comparisons": comparisons or None,
             "responses": int(rows["count"].sum()),
             "attention_checks": checks,
             "modes": len(fit.modes),

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import typer
 
-from app.cli import demo, doctor, exchange, report, serve, simulate, study, sweep, trial
+from app.cli import demo, doctor, exchange, power, report, serve, simulate, study, sweep, trial
 from data.errors import ElbowroomError
 
 cli = typer.Typer(
@@ -21,6 +21,7 @@ cli.command("serve")(serve.serve)
 cli.command("simulate")(simulate.simulate)
 cli.command("trial")(trial.trial)
 cli.command("sweep")(sweep.sweep)
+cli.command("power")(power.power)
 cli.command("report")(report.report)
 cli.command("export")(exchange.export)
 cli.command("import")(exchange.import_)

@@ -23,12 +23,13 @@ def simulate(
     Example: elbowroom simulate --study carmichael2017 --store study.sqlite --participants 7 --seed 1
     """
     from app.cli.progress import progress
-    from app.cohort import simulate_cohort
+    from app.cohort import check_can_be_simulated, simulate_cohort
     from app.studies import open_study
     from data.locations import default_store
     from data.store import Store
 
     opened = open_study(study)
+    check_can_be_simulated(opened.study, study)
     with Store.open(store or default_store()) as kept, progress("Simulated cohort") as report:
         result = simulate_cohort(opened, kept, participants, seed=seed, n_jobs=jobs, progress=report)
     print(result.sentence)

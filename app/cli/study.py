@@ -31,10 +31,12 @@ def check(source: Source) -> None:
 
     Example: elbowroom study check my_study.toml
     """
+    from app.cohort import check_can_be_simulated
     from app.studies import open_study
     from data.schedule import plan_session
 
     study = open_study(source).study
+    check_can_be_simulated(study, source)
     comparisons = len(plan_session(study, 1))
     print(
         f"{source}: valid. {study.name} version {study.version}, {len(study.modes)} modes, "

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.counts import count_responses
+from analysis.engines import gibbs
 from analysis.exact import ExactPosterior, exact_dirichlet_posterior, exact_posterior
 from analysis.fit import fit
 from analysis.model import Model
@@ -88,3 +89,19 @@ def test_gibbs_collapses_five_levels_and_says_so(simulated):
     assert any("A>>B was taken as A>B" in warning for warning in found.questions[0].warnings)
     assert any("pooled" in warning for warning in found.warnings)
     assert_agrees(found.questions[0], exact_dirichlet_posterior(counts_of(table).collapsed()))
+
+
+@pytest.mark.parametrize("n_ties", [0, 1, 12, 10**10])
+@pytest.mark.parametrize("rate_per_tie", [0.3, 1.0, 40.0])
+def test_gibbs_draws_its_tie_parameter_from_its_full_conditional(n_ties, rate_per_tie):
+    rate = rate_per_tie * max(n_ties, 1)
+    theta = gibbs._theta(n_ties, np.full(20_000, rate), np.random.default_rng(1))
+    middle, sd = theta.mean(), theta.std()
+    phi = np.linspace(max(middle - 12 * sd, 1.0 + 1e-12), middle + 20 * sd, 200_001) - 1
+    log_p = n_ties * (np.log(phi) + np.log(phi + 2)) - rate * phi
+    weight = np.exp(log_p - log_p.max())
+    weight /= weight.sum()
+    mean = weight @ (phi + 1)
+    spread = np.sqrt(weight @ (phi + 1 - mean) ** 2)
+    assert middle == pytest.approx(mean, abs=5 * spread / np.sqrt(20_000))
+    assert sd == pytest.approx(spread, rel=0.05)

@@ -10,7 +10,7 @@ import pytest
 
 from analysis.counts import count_responses
 from analysis.diagnostics import convergence
-from analysis.engines import fast, nuts
+from analysis.engines import fast, nuts, pymc_engine
 from analysis.engines.density import packed
 from analysis.engines.pymc_engine import compiler_note
 from analysis.fit import fit
@@ -231,6 +231,7 @@ def test_every_reported_quantity_is_behind_the_gate(simulated):
         ({"engine": "stan"}, "engine: 'stan' is not one of: fast, pymc, gibbs"),
         ({"link": "probit"}, "link: 'probit' is not one of: cumulative, adjacent"),
         ({"link": "adjacent"}, "adjacent needs a scale of 3 levels, not 5"),
+        ({"engine": "gibbs", "link": "adjacent"}, "link: adjacent is not known to the engine gibbs"),
         ({"prior_sd": 0.0}, "prior_sd: 0.0 is no positive number"),
         ({"prior_sd": float("nan")}, "prior_sd: nan is no positive number"),
         ({"seed": -1}, "seed: -1 is negative"),
@@ -274,6 +275,21 @@ assert not heavy, heavy
 def test_the_pymc_engine_agrees_with_the_fast_one(simulated):
     table = simulated(3, participants=8)
     assert_alike(fit(table, SETTINGS).questions[0], fit(table, replace(SETTINGS, engine="pymc")).questions[0])
+
+
+def test_a_draw_that_diverges_in_questions_sampled_together_counts_once(simulated, table_of, monkeypatch):
+    one = simulated(3, participants=4).rows
+    table = table_of(pd.concat([one, one.assign(question="Q2")]), modes=("M1", "M2", "M3"))
+    together = np.zeros((4, 1000), dtype=bool)
+    together[1, 7] = together[2, 30] = True
+
+    def jointly(problems, settings, done=lambda k: None):
+        return [replace(draws, diverging=together) for draws in fast.sample(problems, settings, done)]
+
+    monkeypatch.setattr(pymc_engine, "sample", jointly)
+    found = fit(table, replace(SETTINGS, engine="pymc", pooled=True))
+    assert [q.divergences for q in found.questions] == [2, 2]
+    assert found.divergences == 2
 
 
 def test_a_missing_compiler_is_said_with_what_it_slows_down(monkeypatch, tmp_path):

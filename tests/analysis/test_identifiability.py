@@ -103,3 +103,17 @@ def test_unknown_participants_are_pooled_and_the_fit_says_so(wins_table):
     assert not found.questions[0].hierarchical
     assert any("name no participants" in warning for warning in found.warnings)
     assert "subject_sd" not in found.priors
+
+
+def test_a_name_cannot_turn_round_or_break_the_sentence_it_stands_in(table_of):
+    names = ["a\nb", "\u202ec", "\u05d3"]
+    refused = fit(of_pairs(table_of, [tuple(names[:2])], names)).questions[0]
+    assert refused.reason == (
+        "\u2068\u05d3\u2069 was never compared with another mode. "
+        "Missing: a b against \u2068\u05d3\u2069 or c against \u2068\u05d3\u2069."
+    )
+    rows = pd.DataFrame([("a\nb", "\u202ec", "A>B")], columns=["mode_a", "mode_b", "response"])
+    warned = " ".join(fit(table_of(rows)).questions[0].warnings)
+    assert "a b and c are in fewer" in warned
+    assert "\n" not in warned
+    assert "\u202e" not in warned

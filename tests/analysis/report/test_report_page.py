@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from analysis.report.page import diagnostics_table
+
 
 class Reader(html.parser.HTMLParser):
     """Collects tags, addresses that a browser would load, and the text of a page."""
@@ -160,3 +162,9 @@ def test_many_modes_are_sorted_and_still_named(many_case, tmp_path, write_case):
     ordered = sorted(many_case.fit.questions[0].modes, key=lambda m: -m.worth_mean)
     places = [drawing.index(f">{mode.mode}<") for mode in ordered]
     assert places == sorted(places)
+
+
+def test_unknown_people_are_left_blank_and_not_counted_as_none(study_case):
+    questions = (study_case.fit.questions[0], replace(study_case.fit.questions[1], n_participants=0))
+    people = [row[3] for row in diagnostics_table(replace(study_case.fit, questions=questions)).rows]
+    assert people == ["6", ""]

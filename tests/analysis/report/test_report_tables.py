@@ -8,6 +8,7 @@ import arviz as az
 import pytest
 
 from analysis.report import write_report
+from analysis.report.summary import known_comparisons
 from analysis.report.tables import neutralised, write_csv
 from data.study_file import read_study
 
@@ -119,6 +120,14 @@ def test_the_summary_says_how_the_report_came_about(study_report, study_case):
     assert summary["counts"]["participants"] == 6
     assert summary["counts"]["responses"] == 108
     assert summary["rhat_max"] == study_case.fit.rhat_max
+
+
+def test_comparisons_that_every_participant_numbers_alike_are_counted_for_each(study_case):
+    rows = study_case.table.rows
+    alike = rows.assign(comparison=rows["comparison"].str.partition(".")[2])
+    assert known_comparisons(rows) == 36
+    assert known_comparisons(alike) == 36
+    assert known_comparisons(rows.assign(comparison="")) == 0
 
 
 def test_the_rate_over_people_stands_among_the_parameters(study_report):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from analysis.report.cautions import cautions
 from analysis.report.findings import findings, lead
+from analysis.stuck import stuck_rates
 
 
 def words(case, simulated=False):
@@ -85,3 +86,47 @@ def test_a_fit_that_did_not_converge_says_so(study_case):
     said = " ".join(cautions(study_case.table, fit, findings(fit), None, 0))
     assert "The sampler did not converge" in said
     assert "R-hat 1.300" in said
+
+
+def test_a_question_that_is_not_ranked_is_not_called_open(study_case):
+    case = with_chances(study_case, [(0.9, 0.05, 0.05)] * 3)
+    first, *others = case.fit.questions
+    questions = (first, *(replace(q, ranked=False, reason="No.", modes=()) for q in others))
+    said = words(replace(case, fit=replace(case.fit, questions=questions)))
+    assert said.startswith("Every question that could be ranked has a likely first place. M1 likely ranks")
+    assert "open" not in said
+
+
+def test_modes_stuck_in_more_of_fewer_comparisons_are_not_said_to_have_fewer(study_case):
+    rate = stuck_rates(study_case.stuck, ("M1",))[0]
+    rates = tuple(
+        replace(rate, mode=f"M{k}", stuck=stuck, comparisons=n)
+        for k, (stuck, n) in enumerate([(2, 4), (2, 5), (1, 4), (9, 90)])
+    )
+    said = "".join(phrase.text for phrase in lead((), rates, False))
+    assert said == (
+        "The robot got stuck in 2 of 4 comparisons with M0, in 2 of 5 with M1, in 1 of 4 with M2 and "
+        "at no higher rate with 1 more mode."
+    )
+
+
+def test_one_of_a_kind_is_told_in_the_singular(study_case):
+    fit = replace(study_case.fit, divergences=1)
+    said = " ".join(cautions(study_case.table, fit, findings(fit), None, 1))
+    assert "1 divergent draw." in said
+    assert "1 answer to an attention check is left out of the model." in said
+
+
+def test_a_sampler_that_failed_is_not_blamed_on_the_answers(study_case):
+    def unranked(question):
+        return replace(question, ranked=False, reason="No.", modes=())
+
+    sampled = tuple(unranked(q) for q in study_case.fit.questions)
+    never = tuple(replace(q, draws=None) for q in sampled)
+    for questions, said in (
+        (sampled, "The modes are not ranked on any question. No. "),
+        (sampled[:1], "The modes are not ranked. No. "),
+        (never, "The answers cannot rank the modes on any question. No. "),
+        (never[:1], "The answers cannot rank the modes. No. "),
+    ):
+        assert words(replace(study_case, fit=replace(study_case.fit, questions=questions))) == said
