@@ -13,6 +13,7 @@ import numpy as np
 
 from app.studies import OpenedStudy
 from data.answers import Answer
+from data.errors import InputError
 from data.records import Comparison, Participant, Slot, Switch, Trial
 from data.schedule import PlannedComparison, plan_session
 from data.store import Store, StoredStudy
@@ -21,6 +22,7 @@ from sim_trials.batch import map_jobs
 from sim_trials.metrics import metric_names
 from sim_trials.operators import draw_operator
 from sim_trials.raters import answer, check_rehearsal, draw_rater, experience
+from sim_trials.start import start_angles
 from sim_trials.trial import run_trial
 
 Progress = Callable[[int, int, str], None]
@@ -108,10 +110,10 @@ def simulate_cohort(
     Raises
     ------
     InputError
-        If a question weighs a trial metric that does not exist.
+        If the study cannot be simulated (`check_can_be_simulated`).
     """
     study = opened.study
-    check_rehearsal(study, metric_names())
+    check_can_be_simulated(study, study.name)
     stored = store.add_study(study, opened.text)
     known = {p.id for p in store.participants(stored) if p.finished_at is not None}
     numbers = [n for n in range(1, participants + 1) if participant_id(study, seed, n) not in known]
@@ -137,9 +139,30 @@ def simulate_cohort(
             stuck += sum(t.outcome == "stuck" for d in done for t in d.trials)
     except BaseException:
         results.close()
-        _drop_recordings(store.recordings_folder, unkept)
+        _drop_recordings(store, stored, unkept)
         raise
     return Cohort(participants, participants - len(numbers), len(errands), trials, stuck)
+
+
+def check_can_be_simulated(study: Study, where: str) -> None:
+    """Find out before anything is written whether simulated people can do a study.
+
+    Parameters
+    ----------
+    study : Study
+    where : str
+        What the error calls the study, e.g. its file.
+
+    Raises
+    ------
+    InputError
+        If a question weighs a trial metric that does not exist, or the robot does not reach the maze.
+    """
+    try:
+        check_rehearsal(study, metric_names())
+        start_angles(study.maze)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
 
 
 def participant_id(study: Study, seed: int, number: int) -> str:
@@ -226,10 +249,16 @@ def _keep(store: Store, stored: StoredStudy, participant_id: str, number: int, d
         store.log("elbowroom simulate", "participant simulated", {"participant": participant_id}, at=now)
 
 
-def _drop_recordings(folder: Path, participants: Sequence[str]) -> None:
-    """Remove the laps of participants who were not stored: no recording without its row."""
+def _drop_recordings(store: Store, stored: StoredStudy, participants: Sequence[str]) -> None:
+    """Remove the laps of participants who were not stored: no recording without its row.
+
+    The same cohort may be under way in another process: whom that one stored, keeps the recordings.
+    """
+    kept = {p.id for p in store.participants(stored)}
     for participant in participants:
-        for recording in folder.glob(f"{participant}.c*.parquet"):
+        if participant in kept:
+            continue
+        for recording in store.recordings_folder.glob(f"{participant}.c*.parquet"):
             recording.unlink(missing_ok=True)
 
 

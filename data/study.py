@@ -59,6 +59,9 @@ class Question(Part):
     def _answers_fit_the_scale(self) -> Self:
         if self.answers and len(self.answers) != self.levels:
             raise ValueError(f"answers: {len(self.answers)} labels for a scale of {self.levels} levels")
+        twice = sorted({label for label in self.answers if self.answers.count(label) > 1})
+        if twice:
+            raise ValueError(f"answers: the label {twice[0]!r} is given twice")
         if self.emphasis and self.emphasis not in self.wording:
             raise ValueError(f"emphasis: {self.emphasis!r} does not occur in the wording")
         return self
@@ -179,6 +182,8 @@ class Study(Part):
             twice = sorted({name for name in names if list(names).count(name) > 1})
             if twice:
                 raise ValueError(f"{what}: the name {twice[0]!r} is given twice")
+        if not self.pairs:
+            raise ValueError("protocol.pairs: empty; give at least one pair, or 'all'")
         for pair in self.pairs:
             for name in pair:
                 if name not in self.mode_names:

@@ -1,6 +1,7 @@
 """Reading study files: TOML in, a validated Study out, or one line that says what is wrong."""
 
 import difflib
+import json
 import tomllib
 from importlib import resources
 from pathlib import Path
@@ -56,20 +57,25 @@ def read_study(source: str | Path) -> Study:
 def parse_study(text: str, where: str) -> Study:
     """A validated study from TOML text; ``where`` names the text in an error."""
     try:
-        content = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        # As JSON, because strict types take no list for a tuple otherwise: `repetitions = true` is no number.
+        content = json.dumps(tomllib.loads(text), default=str)
+    except RecursionError:
+        raise InputError(f"{where}: not valid TOML: nested too deeply") from None
+    except ValueError as error:
         raise InputError(f"{where}: not valid TOML: {error}") from None
     try:
-        return Study.model_validate(content)
+        return Study.model_validate_json(content, strict=True)
     except ValidationError as error:
         # A misspelt key is the likelier cause than the key that is missing in its place.
         first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-        raise InputError(f"{where}: {_in_one_line(first)}") from None
+        raise InputError(f"{where}: {' '.join(_in_one_line(first).split())}") from None
 
 
 def _in_one_line(error: ErrorDetails) -> str:
     place = ".".join(str(part + 1) if isinstance(part, int) else part for part in error["loc"])
     given = error["input"]
+    if place.startswith("protocol.pairs"):
+        return 'protocol.pairs: is neither \'all\' nor a list of pairs of modes, such as [["M1", "M2"]]'
     match error["type"]:
         case "extra_forbidden":
             *parents, key = error["loc"]

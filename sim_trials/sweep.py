@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from pydantic import ValidationError
 
 from data.errors import InputError
 from data.locations import writing_folder
@@ -175,8 +176,8 @@ def _with(study: Study, edge: float, dwell: float) -> Study:
     content["stuck"]["dwell_s"] = dwell
     try:
         return Study.model_validate(content)
-    except ValueError as error:
-        reason = str(error).splitlines()[-2].strip() if "\n" in str(error) else str(error)
+    except ValidationError as error:
+        reason = error.errors()[0]["msg"]
         raise InputError(f"sweep: right edge {edge:g} m, dwell {dwell:g} s: {reason}") from None
 
 

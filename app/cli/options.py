@@ -10,6 +10,8 @@ import typer
 from data.errors import InputError
 
 CORES = os.cpu_count() or 1
+MOST_VALUES = 1000
+"""The most values a range on the command line may have."""
 
 StudyOption = Annotated[
     str, typer.Option("--study", metavar="FILE|NAME", help="A study file, or the name of a built-in study.")
@@ -43,15 +45,16 @@ def parse_grid(option: str, text: str) -> list[float]:
     Raises
     ------
     InputError
-        If it is not two numbers and a whole number of at least 1.
+        If it is not two numbers and a whole number from 1 to `MOST_VALUES`.
     """
     parts = text.split(":")
     try:
         first, last, number = float(parts[0]), float(parts[1]), int(parts[2])
-        if len(parts) != 3 or number < 1 or not np.isfinite([first, last]).all():
+        if len(parts) != 3 or not 1 <= number <= MOST_VALUES or not np.isfinite([first, last]).all():
             raise ValueError
     except (ValueError, IndexError):
         raise InputError(
-            f"{option}: {text!r} is no range; write first:last:number, such as -1.03:-1.06:4"
+            f"{option}: {text!r} is no range; write first:last:number, such as -1.03:-1.06:4 "
+            f"(at most {MOST_VALUES} values)"
         ) from None
     return [float(value) for value in np.linspace(first, last, number)]

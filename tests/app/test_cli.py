@@ -52,6 +52,7 @@ def responses(tmp_path: Path) -> Path:
         (["report", "--store", "missing.sqlite", "--out", "r"], "missing.sqlite"),
         (["import"], "--responses FILE.csv and --stuck FILE.csv"),
         (["sweep", "--right-edge", "1:2", "--out", "s"], "--right-edge: '1:2' is no range"),
+        (["sweep", "--dwell", "3:7:1000000000000", "--out", "s"], "at most 1000 values"),
         (["no-such-command"], "no-such-command"),
         (["demo", "--participants", "0"], "--participants"),
     ],

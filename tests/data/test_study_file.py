@@ -116,6 +116,34 @@ def test_the_hash_follows_the_meaning_and_not_the_layout():
     assert parse_study(TEXT.replace("smoothest to use", "smoothest"), "d").sha256 != study.sha256
 
 
+@pytest.mark.parametrize("pairs", ["[]", '[["M1", "M2", "M3"]]', '"some"', '[["M1", 2]]'])
+def test_pairs_that_compare_nothing_are_refused(pairs):
+    assert error_of(TEXT.replace('pairs = "all"', f"pairs = {pairs}")).startswith("protocol.pairs: ")
+
+
+@pytest.mark.parametrize("value", ["true", '"2"', "2.0"])
+def test_a_count_that_is_no_whole_number_is_refused_not_converted(value):
+    said = error_of(TEXT.replace("repetitions = 2", f"repetitions = {value}"))
+    assert said.startswith("protocol.repetitions: input should be a valid integer")
+
+
+def test_a_parameter_that_is_no_number_is_refused_not_converted():
+    said = error_of(TEXT.replace("lambda0 = 0.2", "lambda0 = true", 1))
+    assert said.startswith("modes.1.parameters.lambda0: input should be a valid number")
+
+
+def test_two_answers_with_one_label_are_refused():
+    said = error_of(TEXT.replace('"A: less frustrating", "About the same"', '"Same", "Same"'))
+    assert said == "questions.5: answers: the label 'Same' is given twice"
+
+
+@pytest.mark.parametrize(
+    "line", ["x = " + "9" * 5000, "x = 0x" + "f" * 5000, "x = " + "[" * 5000 + "]" * 5000, '"\\n" = 1']
+)
+def test_odd_toml_is_one_line_and_no_traceback(line):
+    assert error_of(f"{line}\n{TEXT}")
+
+
 values = st.recursive(
     st.none() | st.booleans() | st.integers(-9, 9**20) | st.floats() | st.text(max_size=5),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),

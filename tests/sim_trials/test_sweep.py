@@ -64,3 +64,4 @@ def test_what_cannot_be_swept_is_refused_in_one_line(
     with pytest.raises(InputError, match=message) as caught:
         sweep(study, edges, dwells, participants=1)
     assert "\n" not in str(caught.value)
+    assert "[type=" not in str(caught.value)
