@@ -25,7 +25,7 @@ def show(desk: Desk) -> None:
             ("Hash", stored.sha256),
         ],
     )
-    st.code(stored.toml, language="toml")
+    st.code(stored.toml, language=None)
     st.download_button(
         "Download the study file", stored.toml, file_name=f"{study.name}.toml", mime="application/toml"
     )

@@ -4,6 +4,7 @@ What goes out says A and B. No mode, method, parameter, allocation, seed or titl
 reads everything a participant's browser receives and looks for them.
 """
 
+import hashlib
 from collections import Counter
 
 from app.participant.progress import SLOTS, Progress
@@ -69,7 +70,8 @@ def questions_data(study: Study, progress: Progress, comparison: Comparison) -> 
         **_place(progress, comparison),
         "texts": _titled("questions", progress, comparison),
         "questions": [_question(question) for question in study.questions],
-        "draft_key": comparison.id,
+        # An id begins with the study's hash.
+        "draft_key": hashlib.sha256(comparison.id.encode()).hexdigest()[:16],
         "answers_address": "/answers",
     }
 

@@ -3,6 +3,7 @@
 import streamlit as st
 
 from app.participant.texts import texts
+from app.participant.trouble import attempt
 from app.server.desk import Desk
 from app.server.visitors import Visitor, admit
 
@@ -12,9 +13,5 @@ def show(desk: Desk, here: Visitor) -> None:
     words = texts()["consent"]
     st.title(words["title"], anchor=False)
     st.markdown(desk.study.consent.text)
-    st.button(words["agree"], type="primary", on_click=_agree, args=(desk, here))
+    st.button(words["agree"], type="primary", on_click=attempt, args=(lambda: admit(desk, here.cookie),))
     st.caption(words["decline"])
-
-
-def _agree(desk: Desk, here: Visitor) -> None:
-    admit(desk, here.cookie)

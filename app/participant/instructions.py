@@ -5,6 +5,7 @@ import streamlit as st
 from app.participant.blinding import picture_data
 from app.participant.progress import Progress
 from app.participant.texts import filled, texts
+from app.participant.trouble import attempt
 from app.server.desk import Desk
 from app.stage.stage import picture
 
@@ -18,8 +19,7 @@ def show(desk: Desk, progress: Progress) -> None:
     picture(picture_data(desk.study))
     st.markdown(words["look"])
     st.markdown(words["stuck"] + " " + words["comparisons_one" if of == 1 else "comparisons"])
-    st.button(words["next"], type="primary", on_click=begin_next, args=(desk, progress))
-    prepare_next(desk, progress)
+    _lead_on(desk, progress, words["next"])
 
 
 def show_between(desk: Desk, progress: Progress) -> None:
@@ -30,17 +30,18 @@ def show_between(desk: Desk, progress: Progress) -> None:
     st.markdown(words["text"])
     st.subheader(words["next_title"], anchor=False)
     st.markdown(words["next_text"])
-    st.button(words["next"], type="primary", on_click=begin_next, args=(desk, progress))
-    prepare_next(desk, progress)
+    _lead_on(desk, progress, words["next"])
 
 
-def begin_next(desk: Desk, progress: Progress) -> None:
-    """Start the next comparison."""
-    if progress.next is not None:
-        desk.store.start_comparison(progress.next.id, desk.clock())
+def _lead_on(desk: Desk, progress: Progress, label: str) -> None:
+    """The button that starts the next comparison; its laps are run while the participant reads."""
+    coming = progress.next
+    if coming is None:
+        return
 
+    def begin() -> None:
+        desk.store.start_comparison(coming.id, desk.clock())
 
-def prepare_next(desk: Desk, progress: Progress) -> None:
-    """Run the laps of the next comparison while the participant reads."""
-    if progress.next is not None:
-        desk.laps.prepare(progress.lap_keys(desk.study, progress.next))
+    # A callback: a click is not lost if the script is interrupted on its way to the button.
+    st.button(label, type="primary", on_click=attempt, args=(begin,))
+    desk.laps.prepare(progress.lap_keys(desk.study, coming))

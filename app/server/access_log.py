@@ -4,6 +4,9 @@ import logging
 import re
 from typing import Any
 
+LOG = logging.getLogger("elbowroom")
+"""For what the person who runs the server should know: a full disk, a busy store."""
+
 _TOKEN = re.compile(r"/(join|researcher)/[^\s/?]+")
 _STREAMLIT = ("/_stcore", "/static/", "/stage/", "/media/", "/favicon")
 
@@ -41,6 +44,7 @@ LOGGING: dict[str, Any] = {
     },
     "loggers": {
         "uvicorn.error": {"handlers": ["line"], "level": "WARNING", "propagate": False},
+        "elbowroom": {"handlers": ["line"], "level": "INFO", "propagate": False},
         "uvicorn.access": {"handlers": ["line"], "level": "INFO", "propagate": False},
     },
 }

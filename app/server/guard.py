@@ -66,5 +66,8 @@ class Guard:
 
 def is_own_origin(headers: Headers) -> bool:
     """Whether a request comes from a page of the very host it goes to. No Origin is no proof."""
-    origin = headers.get("origin")
-    return origin is not None and urlsplit(origin).netloc == headers.get("host")
+    try:
+        origin = urlsplit(headers.get("origin", "")).netloc
+    except ValueError:
+        return False
+    return origin != "" and origin == headers.get("host")

@@ -1,13 +1,18 @@
-"""The script that Streamlit runs for every page: the console at its own addresses, else the study."""
+"""The script that Streamlit runs for every page: the console at its own addresses, else the study.
 
-from urllib.parse import urlsplit
+Streamlit makes it the process's main module, which a worker process that starts later imports, under another
+name: there it must do nothing.
+"""
 
-import streamlit as st
+if __name__ == "__main__":
+    from urllib.parse import urlsplit
 
-from app.console.pages import PATHS, show_console
-from app.participant.pages import show_study
+    import streamlit as st
 
-if urlsplit(st.context.url or "").path.strip("/") in PATHS:
-    show_console()
-else:
-    show_study()
+    from app.console.pages import PATHS, show_console
+    from app.participant.pages import show_study
+
+    if urlsplit(st.context.url or "").path.strip("/") in PATHS:
+        show_console()
+    else:
+        show_study()

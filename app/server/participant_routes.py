@@ -7,6 +7,7 @@ slot and a lap alone, and the same address means another lap in the next compari
 import asyncio
 import json
 from collections.abc import Awaitable, Callable
+from concurrent.futures.process import BrokenProcessPool
 
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -15,6 +16,7 @@ from starlette.routing import Route
 
 from app.participant.progress import Progress, progress_of
 from app.participant.watching import BadReport, WatchReport, store_report, watched_s
+from app.server.access_log import LOG
 from app.server.desk import desk
 from app.server.visitors import visitor
 from data.errors import ElbowroomError, InputError
@@ -29,12 +31,17 @@ def _for_participants(handler: Handler) -> Callable[[Request], Awaitable[Respons
     """The handler, for those alone who have a comparison open."""
 
     async def checked(request: Request) -> Response:
-        progress = await run_in_threadpool(_progress, request)
-        if progress is None:
-            return _answer(403, "no participant")
-        if progress.comparison is None:
-            return _answer(409, "no comparison is open")
-        return await handler(request, progress)
+        try:
+            progress = await run_in_threadpool(_progress, request)
+            if progress is None:
+                return _answer(403, "no participant")
+            if progress.comparison is None:
+                return _answer(409, "no comparison is open")
+            return await handler(request, progress)
+        except (ElbowroomError, BrokenProcessPool) as error:
+            # A full disk, a busy store, a killed worker: the page keeps what it has and tries again.
+            LOG.error("%s: %s", request.url.path, error)
+            return _answer(503, "not now")
 
     return checked
 
@@ -69,12 +76,14 @@ async def _watched(request: Request, progress: Progress) -> Response:
     for run in report.runs:
         key = progress.lap_key(desk().study, run.slot, run.lap)
         laps[run.slot, run.lap] = await asyncio.wrap_future(desk().laps.lap(key))
+    refused: dict[str, object] = {}
     try:
         await run_in_threadpool(store_report, desk().store, progress, report, laps, desk().clock())
     except BadReport as error:
-        return _answer(422, str(error))
+        refused = {"refused": str(error)}
+    # Also after a refusal: the page must not count what the server doesn't.
     seconds = await run_in_threadpool(watched_s, desk().store, progress.comparison)
-    return JSONResponse({"watched": seconds}, headers=_NO_STORE)
+    return JSONResponse({**refused, "watched": seconds}, 422 if refused else 200, headers=_NO_STORE)
 
 
 async def _answers(request: Request, progress: Progress) -> Response:
@@ -94,8 +103,6 @@ async def _answers(request: Request, progress: Progress) -> Response:
         await run_in_threadpool(_submit, comparison.id, given, progress)
     except InputError:
         return _answer(422, "an answer is missing or not on its scale")
-    except ElbowroomError:
-        return _answer(503, "not stored")
     return JSONResponse({"stored": True}, headers=_NO_STORE)
 
 
@@ -118,7 +125,7 @@ async def _body(request: Request) -> dict[str, object] | None:
             return None
     try:
         body = json.loads(content)
-    except (UnicodeDecodeError, ValueError):
+    except (ValueError, RecursionError):
         return None
     return body if isinstance(body, dict) else None
 

@@ -91,6 +91,7 @@ class Server:
         cookie: str = "",
         origin: str | None = "own",
         content: object = None,
+        raw: str | None = None,
         headers: Mapping[str, str] | None = None,
     ) -> Reply:
         """Send a request, without following a redirect."""
@@ -99,9 +100,8 @@ class Server:
             sent["Cookie"] = f"{PARTICIPANT_COOKIE}={cookie}"
         if origin is not None:
             sent["Origin"] = self.base if origin == "own" else origin
-        body = None
-        if content is not None:
-            body = json.dumps(content)
+        body = raw if content is None else json.dumps(content)
+        if body is not None:
             sent["Content-Type"] = "application/json"
         connection = http.client.HTTPConnection(urlsplit(self.base).netloc, timeout=60)
         try:

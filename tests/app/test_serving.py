@@ -46,3 +46,16 @@ def test_it_stops_cleanly_when_told_to(tmp_path: Path) -> None:
         running.process.send_signal(signal.SIGINT)
         assert running.process.wait(timeout=60) == 0
     assert "Traceback" not in running.log.read_text()
+
+
+def test_a_worker_that_starts_after_a_page_was_shown_leaves_the_page_alone() -> None:
+    """Streamlit makes its script the main module, which a spawned process imports as ``__mp_main__``."""
+    script = Path(__file__).resolve().parents[2] / "app" / "server" / "page.py"
+    code = f"import runpy, sys; runpy.run_path({str(script)!r}, run_name='__mp_main__')"
+    result = subprocess.run(
+        [sys.executable, "-c", f"{code}; assert 'streamlit' not in sys.modules"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert (result.returncode, result.stderr) == (0, "")

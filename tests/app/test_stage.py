@@ -145,3 +145,31 @@ def test_the_drawn_arm_ends_where_the_simulated_one_does(page: Page) -> None:
 def test_the_unlock_text_says_how_long_is_missing(page: Page, watched: dict[str, float], said: str) -> None:
     texts = "{ both: '{a} and {b}', one: '{seconds} of {slot}', one_second: 'one of {slot}', open: 'open' }"
     assert run(page, "unlock", f"return new m.Unlock(20, {texts}).text(given);", watched) == said
+
+
+def test_what_streamlit_did_not_hear_is_told_again_until_the_page_has_changed(page: Page) -> None:
+    told = run(
+        page,
+        "component",
+        """
+        const told = [], timers = new Map();
+        const { setInterval, clearInterval } = window;
+        window.setInterval = (act) => timers.set(timers.size + 1, act).size;
+        window.clearInterval = (timer) => timers.delete(timer);
+        const place = document.createElement('div');
+        document.body.append(place);
+        const hear = (name) => told.push(name);
+        const part = { parentElement: place, data: {}, name: 'x', setTriggerValue: hear };
+        let tell = null;
+        const remove = m.mount(part, (root, { setTriggerValue }) => {
+          tell = setTriggerValue;
+          return { update() {}, dispose() {} };
+        });
+        tell('answer', 1);
+        for (const act of timers.values()) act();
+        remove();
+        for (const act of timers.values()) act();
+        Object.assign(window, { setInterval, clearInterval });
+        return told;""",
+    )
+    assert told == ["answer", "answer"]

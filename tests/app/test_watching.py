@@ -1,10 +1,13 @@
 """Laps, reports of what was watched, and answers, as the participant's page sends them."""
 
+import json
 import struct
 from datetime import timedelta
 
 import pytest
 
+from app.participant.blinding import questions_data
+from app.participant.progress import progress_of
 from app.participant.watching import BadReport, WatchReport
 from data.records import Participant
 from data.study_file import parse_study
@@ -165,3 +168,40 @@ def test_a_report_that_no_page_sends_is_refused(event: object) -> None:
     study = parse_study(TINY_STUDY, "tiny")
     with pytest.raises(BadReport):
         WatchReport.parse({"events": [event]}, study)
+
+
+@pytest.mark.parametrize("body", ["[" * 60_000, '{"a":' * 10_000, '{"comparison": ' + "9" * 5_000 + "}"])
+@pytest.mark.parametrize("path", ["/watched", "/answers"])
+def test_a_body_that_no_parser_likes_is_refused_quietly(
+    server: Server, watcher: tuple[str, Participant], path: str, body: str
+) -> None:
+    assert server.ask(path, "POST", cookie=watcher[0], raw=body).status == 422
+
+
+def test_seconds_beyond_every_number_are_refused() -> None:
+    with pytest.raises(BadReport, match="seconds from 0 to 3600"):
+        WatchReport.parse(report(run("A", 10**400)), parse_study(TINY_STUDY, "tiny"))
+
+
+def test_a_flood_of_events_is_refused_as_a_whole_and_the_page_learns_what_counts(
+    server: Server, watcher: tuple[str, Participant]
+) -> None:
+    cookie, participant = watcher
+    for first in range(1, 2001, 500):
+        turns = [{"kind": "switch", "number": first + i, "slot": "A"} for i in range(500)]
+        assert server.ask("/watched", "POST", cookie=cookie, content=report(*turns)).status == 200
+    reply = server.ask("/watched", "POST", cookie=cookie, content=report(run("A", 1.0)))
+    assert reply.status == 422
+    assert json.loads(reply.body)["watched"] == {"A": 0.0, "B": 0.0}
+    assert server.store.trials(comparison=f"{participant.id}.c1") == ()
+
+
+def test_the_questions_are_told_nothing_of_the_study_s_hash(
+    server: Server, watcher: tuple[str, Participant]
+) -> None:
+    _, participant = watcher
+    stored = server.store.studies()[0]
+    progress = progress_of(server.store, participant)
+    assert progress.comparison is not None
+    told = json.dumps(questions_data(stored.study, progress, progress.comparison))
+    assert stored.sha256[:6] not in told

@@ -2,6 +2,8 @@
 // theme change, without a cleanup in between; the place (parentElement) stays the same.
 
 const views = new WeakMap();
+const REPEAT_MS = 3000;
+const MOST_REPEATS = 20;
 
 // create(root, component) -> { update(data), dispose() }; it is called once for a comparison, update at every call.
 export function mount(component, create) {
@@ -16,8 +18,11 @@ export function mount(component, create) {
     root.className = 'elbowroom';
     root.dataset.theme = themeOf(place);
     place.append(root);
-    shown = { name, comparison: data.comparison, root, view: create(root, component) };
+    const teller = new Teller(component.setTriggerValue);
+    const view = create(root, { ...component, setTriggerValue: (...said) => teller.tell(...said) });
+    shown = { name, comparison: data.comparison, root, view, teller };
     views.set(place, shown);
+    focusHeading(root);
   }
   shown.root.dataset.theme = themeOf(place);
   shown.view.update(data);
@@ -26,9 +31,39 @@ export function mount(component, create) {
   };
 }
 
+// Streamlit drops what is told while its connection is away, so it is told again until the page has changed.
+class Teller {
+  constructor(send) {
+    this.send = send;
+  }
+
+  tell(name, value) {
+    this.stop();
+    this.send(name, value);
+    let left = MOST_REPEATS;
+    this.timer = setInterval(() => {
+      this.send(name, value);
+      if (--left === 0) this.stop();
+    }, REPEAT_MS);
+  }
+
+  stop() {
+    clearInterval(this.timer);
+  }
+}
+
+// A new page starts at its heading: else the focus is lost with the button that led here.
+function focusHeading(root) {
+  const heading = root.querySelector('h1');
+  if (!heading) return;
+  heading.tabIndex = -1;
+  heading.focus({ preventScroll: true });
+}
+
 function remove(place) {
-  const { root, view } = views.get(place);
+  const { root, view, teller } = views.get(place);
   views.delete(place);
+  teller.stop();
   view.dispose();
   root.remove();
 }

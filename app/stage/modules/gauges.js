@@ -39,6 +39,11 @@ export class Gauges {
     this.most = 0;
   }
 
+  // The next words don't wait for their turn: what stands still must not say otherwise.
+  speakNow() {
+    this.words = null;
+  }
+
   // look: how the cursor looks. Returns the words shown.
   draw(state, look, now = performance.now()) {
     const { texts, limits } = this;

@@ -2,6 +2,8 @@
 
 import { words } from './elements.js';
 
+const ROUNDING_S = 0.02; // less than the server allows for
+
 export class Unlock {
   constructor(requiredS, texts) {
     this.required = requiredS;
@@ -10,7 +12,7 @@ export class Unlock {
 
   // watched: { A, B } [s].
   missing(watched) {
-    return { A: Math.ceil(this.required - watched.A - 1e-6), B: Math.ceil(this.required - watched.B - 1e-6) };
+    return { A: Math.ceil(this.required - watched.A - ROUNDING_S), B: Math.ceil(this.required - watched.B - ROUNDING_S) };
   }
 
   isOpen(watched) {

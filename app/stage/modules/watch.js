@@ -239,7 +239,9 @@ class WatchPage {
       say(this.parts.message, isLast ? all : words(texts.lap_done, { lap, next: lap + 1 }));
     } else {
       const still = { moving: false, spraying: false, pull: 0, speed: 0 };
-      this.#draw({ ...this.shown, state: { ...this.shown.state, ...still } });
+      this.shown = { ...this.shown, state: { ...this.shown.state, ...still } };
+      this.gauges.speakNow();
+      this.#redraw();
       this.#showStuck(outcome, isLast ? all : words(texts.next_lap_in, { lap: lap + 1, slot, seconds: RESET_S }));
     }
     this.#showStatus();
@@ -260,7 +262,7 @@ class WatchPage {
     this.#pause();
     this.log.end();
     await this.log.send();
-    this.tell('answer', this.data.comparison);
+    if (this.unlock.isOpen(this.log.watched)) this.tell('answer', this.data.comparison);
   }
 
   #showStatus() {
@@ -280,6 +282,7 @@ class WatchPage {
     if (what === 'moved') this.tell('moved', this.data.comparison);
     this.parts.trouble.hidden = what !== 'offline';
     if (what === 'offline') say(this.parts.trouble, this.texts.offline);
+    this.#showStatus();
   }
 
   #later(seconds, act) {

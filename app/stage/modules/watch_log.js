@@ -68,6 +68,8 @@ export class WatchLog {
       if (answer?.status === 409) return this.onTrouble('moved');
       if (answer?.ok || answer?.status === 422) {
         this.unsent.splice(0, batch.length);
+        const { watched } = await answer.json();
+        if (watched) this.#agree(watched);
         this.onTrouble(null);
       } else {
         this.onTrouble('offline');
@@ -75,6 +77,12 @@ export class WatchLog {
       }
     }
     return null;
+  }
+
+  // The server counts, since it refuses what two windows watched at the same time; what it hasn't heard of is added.
+  #agree(watched) {
+    this.watched = { ...watched };
+    for (const run of [...this.unsent, this.run]) if (run?.watched_s) this.watched[run.slot] += run.watched_s;
   }
 
   #body(events) {
