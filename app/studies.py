@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from data.errors import InputError, one_of
-from data.study import Mode, Study
+from data.errors import InputError
+from data.study import Study
 from data.study_file import parse_study, study_text
 from sim_trials.modes.method import ResolvedMode
 from sim_trials.modes.registry import resolve
@@ -34,11 +34,3 @@ def open_study(source: str | Path) -> OpenedStudy:
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
     return OpenedStudy(study, text, modes)
-
-
-def mode_named(study: Study, name: str) -> Mode:
-    """The study's mode of this name; InputError that lists the valid names."""
-    for mode in study.modes:
-        if mode.name == name:
-            return mode
-    raise one_of("mode", name, study.mode_names)

@@ -8,7 +8,6 @@ from types import FrameType
 from data.errors import ElbowroomError, InputError
 from data.store import Store, StoredStudy, token_sha256
 from data.store.links import LinkKind
-from data.study_file import parse_study, study_text
 
 _WILDCARDS = ("", "0.0.0.0", "::")
 _GOODBYE_S = 3
@@ -43,20 +42,15 @@ def serve(
     ElbowroomError
         If the store or the port cannot be had.
     """
-    text = study_text(study_source)
-    study = parse_study(text, where=str(study_source))
-    _check_modes(study_source, text)
+    from app.cohort import check_can_be_simulated
+    from app.studies import open_study
+
+    # A wrong mode or a maze out of reach is found now, not when a participant waits for a lap.
+    opened = open_study(study_source)
+    check_can_be_simulated(opened.study, str(study_source))
     listener = _listen(host, port)
     with listener, Store.open(store_url) as store:
-        _run(listener, store, store.add_study(study, text), host, workers)
-
-
-def _check_modes(study_source: str | Path, text: str) -> None:
-    """Find a wrong mode now, not when a participant waits for its lap."""
-    from sim_trials.modes.registry import resolve
-
-    for mode in parse_study(text, where=str(study_source)).modes:
-        resolve(mode)
+        _run(listener, store, store.add_study(opened.study, opened.text), host, workers)
 
 
 def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, workers: int | None) -> None:

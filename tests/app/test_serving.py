@@ -59,3 +59,11 @@ def test_a_worker_that_starts_after_a_page_was_shown_leaves_the_page_alone() -> 
         timeout=60,
     )
     assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_a_maze_out_of_reach_is_found_before_anyone_waits_for_its_lap(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(TINY_STUDY + "\n[maze]\nwall_x_m = 1.9\n")
+    result = attempt(tmp_path, "--study", "study.toml")
+    assert result.returncode == 2
+    assert "the robot does not reach the top left corner" in result.stderr
+    assert not (tmp_path / "study.sqlite").exists()
