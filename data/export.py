@@ -22,6 +22,8 @@ from data.store.snapshot import Row, Snapshot, take_snapshot
 
 Progress = Callable[[int, int, str], None]
 
+FORMAT = 2
+"""Counts the formats of an export. Format 1 had only observed laps, and no ``external_runs``."""
 MARKER = "datapackage.json"
 """The file that tells an export from any other folder."""
 SHEETS = ("participants", "comparisons", "responses", "trials", "stuck_events", "switches", "audit")
@@ -250,7 +252,7 @@ def _data_package(
         "description": study.study.description,
         "version": study.version,
         "elbowroom": {
-            "format": 1,
+            "format": FORMAT,
             "study_revision": study.revision,
             "study_sha256": study.sha256,
             "includes_simulated": include_simulated,

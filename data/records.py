@@ -8,10 +8,11 @@ from typing import Literal
 from data.answers import Answer
 
 Source = Literal["human", "simulated"]
-TrialSource = Literal["observed", "simulated", "external"]
+TrialSource = Literal["observed", "simulated", "external", "guided"]
 Slot = Literal["A", "B"]
 Outcome = Literal["completed", "stuck", "abandoned", "failed"]
 EventKind = Literal["stuck", "elbow_inversion", "protective_stop"]
+Device = Literal["mouse", "keyboard", "touch", "gamepad"]
 Clock = Callable[[], datetime]
 """Gives the present time, aware and in UTC. Injected, so that a simulated cohort can have its own."""
 
@@ -28,6 +29,14 @@ class Participant:
         Place in the study, from 1: it decides the schedule.
     background : mapping
         Answers to the study's background questions.
+    background_at : datetime or None
+        When they were submitted.
+    device : Device or None
+        What the robot is guided with; chosen once.
+    practised_at : datetime or None
+        When practice was done.
+    withdrawn_at : datetime or None
+        When the participant's data were withdrawn; nothing but this row is left of them then.
     """
 
     id: str
@@ -38,11 +47,21 @@ class Participant:
     consent_version: str | None = None
     consented_at: datetime | None = None
     finished_at: datetime | None = None
+    background_at: datetime | None = None
+    device: Device | None = None
+    practised_at: datetime | None = None
+    withdrawn_at: datetime | None = None
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """One blinded A/B pair shown to one participant; ``id`` is ``<participant>.c<position>``."""
+    """One blinded A/B pair shown to one participant; ``id`` is ``<participant>.c<position>``.
+
+    Attributes
+    ----------
+    restarted_at : datetime or None
+        When the participant came back and began it anew: trials before count no longer as exposure.
+    """
 
     id: str
     participant: str
@@ -53,6 +72,7 @@ class Comparison:
     check: bool
     started_at: datetime | None = None
     answered_at: datetime | None = None
+    restarted_at: datetime | None = None
 
     def mode_of(self, slot: Slot) -> str:
         """The mode behind a slot. The only way from A or B to a mode's name."""
@@ -132,6 +152,26 @@ class Switch:
     number: int
     slot: Slot
     at: datetime
+
+
+@dataclass(frozen=True)
+class ExternalRun:
+    """Where a comparison with a robot in the lab stands, so that a restart goes on there.
+
+    Attributes
+    ----------
+    wanted : Slot
+        The method the participant turned to.
+    loaded : Slot or None
+        The method the operator said is loaded.
+    started_at : datetime or None
+        When the run under way began; None between runs.
+    """
+
+    comparison: str
+    wanted: Slot
+    loaded: Slot | None = None
+    started_at: datetime | None = None
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,9 @@
 """Responses in the shape the analysis takes, whether they come from a store or from a CSV."""
 
-from dataclasses import dataclass
+import hashlib
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from typing import Self
 
 import pandas as pd
 
@@ -59,6 +62,16 @@ class ResponseTable:
     sha256: str
     title: str
 
+    def without(self, comparisons: Collection[str]) -> Self:
+        """The same without the answers to some comparisons; modes and questions stay."""
+        rows = self.rows[~self.rows["comparison"].isin(list(comparisons))].reset_index(drop=True)
+        return replace(self, rows=rows, sha256=rows_sha256(rows))
+
+
+def rows_sha256(rows: pd.DataFrame) -> str:
+    """Hash of a table's contents."""
+    return hashlib.sha256(rows.to_csv(index=False, lineterminator="\n").encode()).hexdigest()
+
 
 @dataclass(frozen=True)
 class StuckTable:
@@ -69,6 +82,27 @@ class StuckTable:
     rows : DataFrame
         One row per comparison and mode in it: ``participant``, ``comparison``, ``mode`` (str),
         ``stuck`` (bool: at least once under that mode) and ``exposure_s`` (float).
+    """
+
+    rows: pd.DataFrame
+
+    def without(self, comparisons: Collection[str]) -> Self:
+        """The same without some comparisons."""
+        kept = ~self.rows["comparison"].isin(list(comparisons))
+        return replace(self, rows=self.rows[kept].reset_index(drop=True))
+
+
+@dataclass(frozen=True)
+class LagTable:
+    """How promptly the robot followed the hand in trials that people guided.
+
+    Attributes
+    ----------
+    rows : DataFrame
+        One row per guided trial: ``participant``, ``comparison``, ``mode`` (str), and as float, NaN where it
+        was not measured, ``latency_median_ms`` and ``latency_p95_ms`` (from sending a movement of the hand to
+        drawing what came of it), ``frame_rate_hz`` (of the page), ``ticks`` of the control loop and
+        ``skipped_ticks``, those that it lost to keep up with time.
     """
 
     rows: pd.DataFrame

@@ -26,15 +26,44 @@ class Consent(Part):
     text: Text
 
 
+class BackgroundQuestion(Part):
+    """One short question about the participant, asked once after consent.
+
+    ``choice`` offers ``choices``; ``number`` takes one from ``lowest`` to ``highest``; ``text`` takes up to
+    200 characters.
+    """
+
+    name: Name
+    wording: Text
+    kind: Literal["choice", "number", "text"] = "choice"
+    choices: tuple[Text, ...] = ()
+    lowest: float = 0.0
+    highest: float = 120.0
+    required: bool = False
+
+    @model_validator(mode="after")
+    def _can_be_answered(self) -> Self:
+        if self.kind == "choice" and len(self.choices) < 2:
+            raise ValueError("choices: at least two are needed for the kind 'choice'")
+        if self.kind != "choice" and self.choices:
+            raise ValueError(f"choices: not for the kind {self.kind!r}")
+        if len(set(self.choices)) < len(self.choices):
+            raise ValueError("choices: one is given twice")
+        if self.lowest >= self.highest:
+            raise ValueError("lowest must be smaller than highest")
+        return self
+
+
 class Mode(Part):
     """One controller under comparison.
 
     ``method`` names an entry of the mode registry (``sim_trials.modes``), which also
     validates ``parameters``; ``name`` is what the report calls it. No participant sees either.
+    A study with a robot of its own (`Protocol.trial_source` ``external``) needs no method.
     """
 
     name: Name
-    method: Name
+    method: Name = "external"
     description: str = ""
     parameters: dict[str, float] = Field(default_factory=dict)
 
@@ -84,16 +113,39 @@ DEFAULT_LABELS: dict[int, tuple[str, ...]] = {
 }
 
 
-class Protocol(Part):
-    """How comparisons are put to a participant."""
+class Practice(Part):
+    """Laps before the first comparison, to get used to the robot.
 
-    trial_source: Literal["observed"] = "observed"
+    On a narrower rectangle, where the arm doesn't have to stretch: there, damping methods have nothing to do,
+    and practice favours none of them.
+    """
+
+    laps: int = Field(1, ge=0, le=10)
+    right_y_m: float = Field(-0.50, ge=-1.5, le=1.0)
+    mode: Name | None = None
+
+
+class Protocol(Part):
+    """How comparisons are put to a participant.
+
+    ``trial_source`` says who moves which robot: ``guided`` by the participant in the browser, ``observed``
+    laps of a simulated operator, or ``external``, a robot in the lab that an operator tends.
+    ``returning`` says what happens to an open comparison when a participant comes back to it, and
+    ``returning_within_h`` for how long after joining they may [h], 0 for ever. ``finish_url`` is where a
+    participant is sent at the end; ``{code}`` in it becomes the completion code.
+    """
+
+    trial_source: Literal["guided", "observed", "external"] = "guided"
     pairs: Literal["all"] | tuple[tuple[Name, Name], ...] = "all"
     repetitions: int = Field(2, ge=1, le=50)
     laps_per_condition: int = Field(3, ge=1, le=20)
     minimum_exposure_s: float = Field(20.0, ge=0, le=3600)
     attention_checks: int = Field(0, ge=0, le=20)
     planned_participants: int = Field(7, ge=1, le=100_000)
+    break_every: int = Field(3, ge=0, le=100)
+    returning: Literal["resume", "restart_comparison"] = "resume"
+    returning_within_h: float = Field(0.0, ge=0, le=8760)
+    finish_url: Annotated[str, StringConstraints(pattern=r"^(https?://\S+)?$")] = ""
 
 
 class Maze(Part):
@@ -158,6 +210,18 @@ class Controller(Part):
     actuator_lag_s: float = Field(0.02, gt=0, le=0.2)
 
 
+_LATER_KEYS = (
+    ("", "background"),
+    ("", "practice"),
+    ("protocol", "break_every"),
+    ("protocol", "returning"),
+    ("protocol", "returning_within_h"),
+    ("protocol", "finish_url"),
+)
+"""Keys younger than the first stores: at their defaults they aren't part of a study's hash, so that a study
+stored before them, and recordings that name its hash, stay what they were."""
+
+
 class Study(Part):
     """A whole study, as its file defines it."""
 
@@ -168,9 +232,11 @@ class Study(Part):
     description: str = ""
     seed: int = Field(2017, ge=0, lt=2**63)
     consent: Consent
+    background: tuple[BackgroundQuestion, ...] = ()
     modes: tuple[Mode, ...] = Field(min_length=2)
     questions: tuple[Question, ...] = Field(min_length=1)
     protocol: Protocol = Protocol()
+    practice: Practice = Practice()
     maze: Maze = Maze()
     feedback: Feedback = Feedback()
     stuck: Stuck = Stuck()
@@ -178,7 +244,12 @@ class Study(Part):
 
     @model_validator(mode="after")
     def _names_are_consistent(self) -> Self:
-        for what, names in (("modes", self.mode_names), ("questions", [q.name for q in self.questions])):
+        named = {
+            "modes": self.mode_names,
+            "questions": [question.name for question in self.questions],
+            "background": [question.name for question in self.background],
+        }
+        for what, names in named.items():
             twice = sorted({name for name in names if list(names).count(name) > 1})
             if twice:
                 raise ValueError(f"{what}: the name {twice[0]!r} is given twice")
@@ -192,6 +263,13 @@ class Study(Part):
                 raise ValueError(f"protocol.pairs: {pair[0]!r} is paired with itself")
         if len({frozenset(pair) for pair in self.pairs}) < len(self.pairs):
             raise ValueError("protocol.pairs: a pair is given twice")
+        if self.practice.mode is not None and self.practice.mode not in self.mode_names:
+            raise ValueError(
+                f"practice.mode: {self.practice.mode!r} is not one of: {', '.join(self.mode_names)}"
+            )
+        left = self.maze.left_y_m - 2 * self.maze.corner_tolerance_m
+        if self.has_practice and self.practice.right_y_m >= left:
+            raise ValueError("practice.right_y_m must be smaller than maze.left_y_m: y grows to the left")
         return self
 
     @property
@@ -208,7 +286,28 @@ class Study(Part):
         return self.protocol.pairs
 
     @property
+    def has_practice(self) -> bool:
+        """Whether participants practise first: only those who guide the robot do."""
+        return self.protocol.trial_source == "guided" and self.practice.laps > 0
+
+    @property
+    def practice_mode(self) -> str:
+        """The mode that is practised with."""
+        return self.practice.mode or self.mode_names[0]
+
+    @property
+    def practice_study(self) -> Self:
+        """This study with the rectangle that is practised on, never wider than the maze."""
+        right = max(self.practice.right_y_m, self.maze.right_y_m)
+        return self.model_copy(update={"maze": self.maze.model_copy(update={"right_y_m": right})})
+
+    @property
     def sha256(self) -> str:
         """Hash of the study's meaning: comments and layout of the file do not change it."""
-        canonical = json.dumps(self.model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
+        content = self.model_dump(mode="json")
+        for part, key in _LATER_KEYS:
+            owner: Part = getattr(self, part) if part else self
+            if getattr(owner, key) == type(owner).model_fields[key].get_default():
+                del (content[part] if part else content)[key]
+        canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(canonical.encode()).hexdigest()

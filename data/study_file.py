@@ -2,6 +2,7 @@
 
 import difflib
 import json
+import re
 import tomllib
 from importlib import resources
 from pathlib import Path
@@ -71,6 +72,30 @@ def parse_study(text: str, where: str) -> Study:
         raise InputError(f"{where}: {' '.join(_in_one_line(first).split())}") from None
 
 
+def with_trial_source(text: str) -> str:
+    """A study's text as it was meant when laps could only be observed: now it says so where it said nothing.
+
+    For texts from stores and exports of that time alone: today a file that says nothing means guided trials.
+    """
+    meant = tomllib.loads(text)
+    if "trial_source" in meant.get("protocol", {}):
+        return text
+    meant["protocol"] = {"trial_source": "observed", **meant.get("protocol", {})}
+    said = 'trial_source = "observed"'
+    ways = (
+        re.sub(r"(?m)^(\s*\[\s*protocol\s*\][^\r\n]*)", rf"\1\n{said}", text, count=1),
+        re.sub(r"(?m)^(\s*protocol\s*=\s*\{)", rf"\1 {said},", text, count=1),
+        f"protocol.{said}\n{text}",
+    )
+    for way in ways:
+        try:
+            if tomllib.loads(way) == meant:
+                return way
+        except tomllib.TOMLDecodeError:
+            continue
+    return text
+
+
 def _in_one_line(error: ErrorDetails) -> str:
     place = ".".join(str(part + 1) if isinstance(part, int) else part for part in error["loc"])
     given = error["input"]
@@ -87,6 +112,8 @@ def _in_one_line(error: ErrorDetails) -> str:
             return f"{place}: missing"
         case "literal_error":
             return f"{place}: {given!r} is not one of: {error['ctx']['expected'].replace(' or ', ', ')}"
+        case "string_pattern_mismatch" if place == "protocol.finish_url":
+            return f"{place}: {given!r} is no web address: https://... , or empty"
         case "string_pattern_mismatch":
             return f"{place}: {given!r} is no name: a letter, then up to 39 letters, digits, '_', '.', '-'"
         case "value_error":

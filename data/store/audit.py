@@ -9,12 +9,13 @@ from datetime import UTC, datetime
 from sqlalchemy import select
 
 from data.records import AuditEntry
+from data.store.external_runs import StoredExternalRuns
 from data.store.rows import every, first, record_of, row_of
 from data.store.studies import StoredStudy
 from data.store.tables import audit
-from data.store.trials import StoredTrials
 
 UNBLIND = "unblind"
+LOCK = "lock study"
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class AuditVerdict:
         return f"audit log changed after it was written, from entry {self.first_bad} on"
 
 
-class StoredAudit(StoredTrials):
+class StoredAudit(StoredExternalRuns):
     """The audit log of a store."""
 
     def log(
@@ -71,6 +72,13 @@ class StoredAudit(StoredTrials):
         with self.transaction():
             if not self.is_unblinded(study):
                 self.log(actor, UNBLIND, {"study": study.label, "sha256": study.sha256}, at)
+
+    def lock_study(self, study: StoredStudy, actor: str, at: datetime | None = None) -> None:
+        """Lock a revision of a study by hand, as the first person who takes part does; once."""
+        with self.transaction() as connection:
+            if not self._study_by_id(connection, study.id).locked:
+                self._lock(connection, study.id)
+                self.log(actor, LOCK, {"study": study.label, "sha256": study.sha256}, at)
 
     def is_unblinded(self, study: StoredStudy) -> bool:
         """Whether anyone has revealed the modes of this revision of the study."""

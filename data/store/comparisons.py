@@ -26,7 +26,7 @@ class StoredComparisons(StoredParticipants):
         Raises
         ------
         ElbowroomError
-            If a comparison is stored with other modes or at another position.
+            If a comparison is stored with other modes or at another position, or its participant withdrew.
         InputError
             If a mode is not of the study.
         """
@@ -35,6 +35,10 @@ class StoredComparisons(StoredParticipants):
             studies: dict[str, StoredStudy] = {}
             for comparison in new:
                 if comparison.participant not in studies:
+                    if self._participant(connection, comparison.participant).withdrawn_at is not None:
+                        raise ElbowroomError(
+                            f"participant {comparison.participant} has withdrawn: nothing more is kept"
+                        )
                     studies[comparison.participant] = self.study_of(comparison.participant)
                 stored = self._comparison_row(connection, comparison.id)
                 if stored is None:
@@ -76,6 +80,16 @@ class StoredComparisons(StoredParticipants):
             if self._comparison(connection, comparison_id).started_at is None:
                 here = comparisons.c.id == comparison_id
                 connection.execute(update(comparisons).where(here).values(started_at=at))
+            return self._comparison(connection, comparison_id)
+
+    def restart_comparison(self, comparison_id: str, at: datetime) -> Comparison:
+        """Keep that an open comparison is begun anew; one that is answered stays as it is."""
+        with self.transaction() as connection:
+            stored = self._comparison(connection, comparison_id)
+            if stored.started_at is None or stored.answered_at is not None:
+                return stored
+            here = comparisons.c.id == comparison_id
+            connection.execute(update(comparisons).where(here).values(restarted_at=at))
             return self._comparison(connection, comparison_id)
 
     def add_switch(self, switch: Switch) -> None:

@@ -114,7 +114,8 @@ def _engine(address: Address) -> Engine:
 def _prepare_sqlite(connection: Any, _: object) -> None:
     # Transactions are begun by _begin_sqlite: Python's own begin comes too late for a reader.
     connection.isolation_level = None
-    for pragma in ("synchronous=FULL", "foreign_keys=ON"):
+    # What a participant withdraws is overwritten, not just unlinked.
+    for pragma in ("synchronous=FULL", "foreign_keys=ON", "secure_delete=ON"):
         connection.execute(f"PRAGMA {pragma}")
     _log_ahead(connection)
 

@@ -1,14 +1,14 @@
-"""What the analysis reads of a store: responses, stuck comparisons and how far a study has come."""
+"""What the analysis reads of a store: responses, stuck comparisons, lag, and how far a study has come."""
 
-import hashlib
+import math
 from dataclasses import dataclass
 
 import pandas as pd
-from sqlalchemy import Select, func, join, select
+from sqlalchemy import Select, func, join, or_, select
 
 from data.errors import InputError
 from data.records import Source
-from data.responses import QuestionScale, ResponseTable, StuckTable
+from data.responses import LagTable, QuestionScale, ResponseTable, StuckTable, rows_sha256
 from data.store.links import StoredLinks
 from data.store.rows import every
 from data.store.studies import StoredStudy
@@ -37,6 +37,10 @@ STUCK_TYPES = {
     "exposure_s": "float64",
 }
 """Columns of a stuck table, in order, with their types."""
+
+
+LAG_METRICS = ("latency_median_ms", "latency_p95_ms", "frame_rate_hz", "ticks", "skipped_ticks")
+"""What a lag table takes of a guided trial's metrics."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,7 @@ class StoredEvidence(StoredLinks):
             questions=tuple(scale_of(q) for q in study.study.questions if q.name in asked),
             has_participants=not pooled,
             is_simulated=bool((rows["source"] == "simulated").any()),
-            sha256=hashlib.sha256(rows.to_csv(index=False, lineterminator="\n").encode()).hexdigest(),
+            sha256=rows_sha256(rows),
             title=study.study.title,
         )
 
@@ -168,10 +172,49 @@ class StoredEvidence(StoredLinks):
         table = pd.DataFrame([row | {"exposure_s": exposure[key]} for key, row in rows.items()])
         return StuckTable(table.astype(STUCK_TYPES))
 
+    def lag_table(self, study: StoredStudy, include_simulated: bool = False) -> LagTable | None:
+        """How promptly the robot followed the hand, trial by trial; None if people guided none.
+
+        Attention checks are left out, and trials from before a comparison was begun anew: its answers are
+        about those after.
+        """
+        sources = self.sources(study, include_simulated)
+        query = (
+            select(comparisons.c.participant, trials.c.comparison, trials.c.mode, trials.c.metrics)
+            .join_from(trials, comparisons)
+            .join(participants)
+            .where(
+                participants.c.study == study.id,
+                participants.c.source.in_(sources),
+                trials.c.source == "guided",
+                comparisons.c.check.is_(False),
+                or_(comparisons.c.restarted_at.is_(None), trials.c.started_at >= comparisons.c.restarted_at),
+            )
+            .order_by(
+                participants.c.source,
+                participants.c.number,
+                participants.c.id,
+                comparisons.c.position,
+                trials.c.slot,
+                trials.c.number,
+            )
+        )
+        with self.reading() as connection:
+            known = every(connection, query)
+        if not known:
+            return None
+        rows = [
+            {"participant": trial["participant"], "comparison": trial["comparison"], "mode": trial["mode"]}
+            | {name: _measured(trial["metrics"].get(name)) for name in LAG_METRICS}
+            for trial in known
+        ]
+        return LagTable(pd.DataFrame(rows))
+
     def counts(self, study: StoredStudy, include_simulated: bool = False) -> Counts:
         """How far a study has come, among people or with simulated participants as well."""
         sources: list[Source] = ["human", "simulated"] if include_simulated else ["human"]
         mine = (participants.c.study == study.id) & participants.c.source.in_(sources)
+        mine &= participants.c.withdrawn_at.is_(None)
         of_people = select(func.count()).select_from(participants).where(mine)
         of_comparisons = select(func.count()).select_from(join(comparisons, participants)).where(mine)
         answered = join(join(responses, comparisons), participants)
@@ -198,7 +241,8 @@ class StoredEvidence(StoredLinks):
         """The sources to read; never simulated ones unasked."""
         if include_simulated:
             return ["human", "simulated"]
-        query = select(participants.c.source).where(participants.c.study == study.id).distinct()
+        here = (participants.c.study == study.id) & participants.c.withdrawn_at.is_(None)
+        query = select(participants.c.source).where(here).distinct()
         with self.reading() as connection:
             present = set(connection.execute(query).scalars())
         if present == {"simulated"}:
@@ -207,6 +251,11 @@ class StoredEvidence(StoredLinks):
                 "add --include-simulated to use them"
             )
         return ["human"]
+
+
+def _measured(value: float | None) -> float:
+    """A metric, or NaN: what was never measured is missing or negative."""
+    return math.nan if value is None or not value >= 0 else float(value)
 
 
 def scale_of(question: Question) -> QuestionScale:

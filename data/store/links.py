@@ -9,10 +9,10 @@ from sqlalchemy import Connection, select, update
 
 from data.errors import ElbowroomError, one_of
 from data.records import Participant
-from data.store.audit import StoredAudit
 from data.store.rows import every, first, record_of, row_of
 from data.store.studies import StoredStudy
 from data.store.tables import links, sessions
+from data.store.withdrawal import StoredWithdrawals
 
 LinkKind = Literal["participant", "personal", "researcher"]
 """For any number of participants, for one participant, or for a researcher once."""
@@ -56,7 +56,7 @@ def token_sha256(token: str) -> str:
     return hashlib.sha256(token.encode()).hexdigest()
 
 
-class StoredLinks(StoredAudit):
+class StoredLinks(StoredWithdrawals):
     """The links and browser sessions of a store."""
 
     def create_link(
@@ -110,7 +110,7 @@ class StoredLinks(StoredAudit):
         Raises
         ------
         LinkRefused
-            If the link is unknown, expired or for researchers.
+            If the link is unknown, expired or for researchers, or its participant has withdrawn.
         """
         with self.transaction() as connection:
             time = at or self.clock()
@@ -118,7 +118,10 @@ class StoredLinks(StoredAudit):
             if link.participant is not None:
                 return self._participant(connection, link.participant)
             if link.kind == "participant" and self._participant_row(connection, participant_id) is not None:
-                return self._participant(connection, participant_id)
+                known = self._participant(connection, participant_id)
+                if known.withdrawn_at is not None:
+                    raise LinkRefused("whoever followed this link here has withdrawn")
+                return known
             number = self._next_number(connection, study.id, "human")
             joined = self.add_participant(study, Participant(participant_id, number, "human", time))
             who = joined.id if link.kind == "personal" else None

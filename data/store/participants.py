@@ -7,8 +7,9 @@ from datetime import datetime
 
 from sqlalchemy import Connection, RowMapping, select, update
 
+from data.background import checked_background
 from data.errors import ElbowroomError
-from data.records import Participant, Source
+from data.records import Device, Participant, Source
 from data.store.rows import every, first, record_of, row_of
 from data.store.studies import StoredStudies, StoredStudy
 from data.store.tables import allocations, participants
@@ -97,9 +98,7 @@ class StoredParticipants(StoredStudies):
                 raise ElbowroomError(f"participant {participant_id!r} is not in the store")
             return self._study_by_id(connection, row["study"])
 
-    def record_consent(
-        self, participant_id: str, version: str, at: datetime, background: Mapping[str, str] | None = None
-    ) -> Participant:
+    def record_consent(self, participant_id: str, version: str, at: datetime) -> Participant:
         """Keep that a participant agreed, to which text and when; the first time stands."""
         with self.transaction() as connection:
             stored = self._participant(connection, participant_id)
@@ -109,12 +108,37 @@ class StoredParticipants(StoredStudies):
                         f"participant {participant_id} agreed to version {stored.consent_version} already"
                     )
                 return stored
-            changes = {
-                "consent_version": version,
-                "consented_at": at,
-                "background": {**stored.background, **(background or {})},
-            }
-            return self._change(connection, stored, changes)
+            return self._change(connection, stored, {"consent_version": version, "consented_at": at})
+
+    def record_background(self, participant_id: str, answers: Mapping[str, str], at: datetime) -> Participant:
+        """Keep the answers to the background questions; the first ones stand.
+
+        Raises
+        ------
+        InputError
+            If an answer is none that its question takes (``data.background``).
+        """
+        with self.transaction() as connection:
+            stored = self._participant(connection, participant_id)
+            if stored.background_at is not None:
+                return stored
+            given = checked_background(self.study_of(participant_id).study, answers)
+            background = {**stored.background, **given}
+            return self._change(connection, stored, {"background": background, "background_at": at})
+
+    def record_device(self, participant_id: str, device: Device) -> Participant:
+        """Keep what a participant guides the robot with; the first choice stands."""
+        with self.transaction() as connection:
+            stored = self._participant(connection, participant_id)
+            return stored if stored.device else self._change(connection, stored, {"device": device})
+
+    def record_practice(self, participant_id: str, at: datetime) -> Participant:
+        """Keep that a participant has practised; the first time stands."""
+        with self.transaction() as connection:
+            stored = self._participant(connection, participant_id)
+            if stored.practised_at is not None:
+                return stored
+            return self._change(connection, stored, {"practised_at": at})
 
     def finish_participant(self, participant_id: str, at: datetime) -> Participant:
         """Keep when a participant was done; the first time stands."""
@@ -125,6 +149,8 @@ class StoredParticipants(StoredStudies):
             return self._change(connection, stored, {"finished_at": at})
 
     def _change(self, connection: Connection, stored: Participant, changes: dict[str, object]) -> Participant:
+        if stored.withdrawn_at is not None:
+            raise ElbowroomError(f"participant {stored.id} has withdrawn: nothing more is kept")
         connection.execute(update(participants).where(participants.c.id == stored.id).values(**changes))
         return replace(stored, **changes)  # type: ignore[arg-type]
 

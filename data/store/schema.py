@@ -7,9 +7,9 @@ from sqlalchemy import Connection, inspect, text
 from data.errors import InputError
 from data.store.database import Database
 
-NEWEST = "0001"
+NEWEST = "0002"
 """The schema this Elbowroom writes; the last file of ``migrations/versions``."""
-KNOWN = ("0001",)
+KNOWN = ("0001", "0002")
 
 
 def prepare_schema(database: Database, *, create: bool) -> None:

@@ -12,6 +12,7 @@ from data.store.tables import (
     allocations,
     audit,
     comparisons,
+    external_runs,
     imports,
     links,
     participants,
@@ -36,6 +37,7 @@ TABLES = (
     stuck_events,
     responses,
     switches,
+    external_runs,
     links,
     sessions,
     imports,
@@ -63,6 +65,7 @@ def take_snapshot(store: Store, study: StoredStudy, include_simulated: bool) -> 
     events = (
         select(stuck_events).join_from(stuck_events, trials).join(comparisons).join(participants).where(mine)
     )
+    under_way = select(external_runs).join_from(external_runs, comparisons).join(participants).where(mine)
     shown = select(comparisons).join_from(comparisons, participants).where(mine)
     ours = select(participants.c.id).where(mine)
     queries: dict[str, Select[tuple[object, ...]]] = {
@@ -76,6 +79,7 @@ def take_snapshot(store: Store, study: StoredStudy, include_simulated: bool) -> 
         "stuck_events": events.order_by(*trial_order, stuck_events.c.number),
         "responses": asked.order_by(*people, of_comparison, responses.c.question),
         "switches": turned.order_by(*people, of_comparison, switches.c.number),
+        "external_runs": under_way.order_by(*people, of_comparison),
         "links": select(links)
         .where(links.c.study == study.id, links.c.participant.is_(None) | links.c.participant.in_(ours))
         .order_by(links.c.created_at, links.c.token_sha256),

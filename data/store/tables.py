@@ -31,7 +31,7 @@ from sqlalchemy import (
 from sqlalchemy.types import TypeDecorator, TypeEngine
 
 from data.answers import ANSWERS
-from data.records import EventKind, Outcome, Slot, Source, TrialSource
+from data.records import Device, EventKind, Outcome, Slot, Source, TrialSource
 
 metadata = MetaData(
     naming_convention={
@@ -128,11 +128,10 @@ def _column(
     return Column(name, kind, *extra, nullable=nullable, primary_key=primary_key, info=info)
 
 
-def _choice(name: str, valid: tuple[str, ...], meaning: str) -> Column[Any]:
+def _choice(name: str, valid: tuple[str, ...], meaning: str, nullable: bool = False) -> Column[Any]:
     listed = ", ".join(f"'{value}'" for value in valid)
-    return _column(
-        name, String(20), meaning, CheckConstraint(f"{name} IN ({listed})", f"valid_{name}"), valid=valid
-    )
+    check = CheckConstraint(f"{name} IN ({listed})", f"valid_{name}")
+    return _column(name, String(20), meaning, check, valid=valid, nullable=nullable)
 
 
 def _key(name: str, meaning: str) -> Column[Any]:
@@ -181,6 +180,12 @@ participants = Table(
     _column("consent_version", Text, "Version of the consent text agreed to", nullable=True),
     _column("consented_at", UtcTime, "When consent was given", unit="UTC", nullable=True),
     _column("finished_at", UtcTime, "When the last comparison was answered", unit="UTC", nullable=True),
+    _column(
+        "background_at", UtcTime, "When the background questions were answered", unit="UTC", nullable=True
+    ),
+    _choice("device", get_args(Device), "What the robot is guided with", nullable=True),
+    _column("practised_at", UtcTime, "When practice was done", unit="UTC", nullable=True),
+    _column("withdrawn_at", UtcTime, "When the participant's data were withdrawn", unit="UTC", nullable=True),
     _column("pooled", Boolean, "True if this stands for unknown people whose answers were imported together"),
     # Every person has a number of their own; simulated cohorts of several seeds share the schedule's.
     Index(
@@ -205,6 +210,13 @@ comparisons = Table(
     _column("check", Boolean, "True for an attention check, where A and B may be one mode"),
     _column("started_at", UtcTime, "When it was first shown", unit="UTC", nullable=True),
     _column("answered_at", UtcTime, "When the answers were submitted", unit="UTC", nullable=True),
+    _column(
+        "restarted_at",
+        UtcTime,
+        "When it was begun anew: trials before count no longer as exposure",
+        unit="UTC",
+        nullable=True,
+    ),
     UniqueConstraint("participant", "position"),
 )
 
@@ -255,6 +267,15 @@ switches = Table(
     _column("number", Integer, "Counts the switches of the comparison, from 1", primary_key=True),
     _choice("slot", get_args(Slot), "The method turned to"),
     _column("at", UtcTime, "When", unit="UTC"),
+)
+
+external_runs = Table(
+    "external_runs",
+    metadata,
+    _of("comparison", "comparisons.id", "The comparison under way at the robot", primary_key=True),
+    _choice("wanted", get_args(Slot), "The method the participant turned to"),
+    _choice("loaded", get_args(Slot), "The method the operator has loaded", nullable=True),
+    _column("started_at", UtcTime, "When the run under way began", unit="UTC", nullable=True),
 )
 
 audit = Table(

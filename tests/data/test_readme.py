@@ -8,15 +8,30 @@ from pydantic_core import PydanticUndefined
 
 from data.response_csv import OPTIONAL, REQUIRED
 from data.store.tables import metadata
-from data.study import Consent, Controller, Feedback, Maze, Mode, Part, Protocol, Question, Stuck, Study
+from data.study import (
+    BackgroundQuestion,
+    Consent,
+    Controller,
+    Feedback,
+    Maze,
+    Mode,
+    Part,
+    Practice,
+    Protocol,
+    Question,
+    Stuck,
+    Study,
+)
 
 README = (Path(__file__).resolve().parents[2] / "data" / "README.md").read_text(encoding="utf-8")
 PARTS: dict[str, type[Part]] = {
     "": Study,
     "consent.": Consent,
     "modes.": Mode,
+    "background.": BackgroundQuestion,
     "questions.": Question,
     "protocol.": Protocol,
+    "practice.": Practice,
     "maze.": Maze,
     "feedback.": Feedback,
     "stuck.": Stuck,

@@ -14,7 +14,20 @@ from hypothesis import strategies as st
 
 from data.errors import ElbowroomError, InputError
 from data.export import export_study
-from data.records import Comparison, EventKind, Outcome, Participant, Source, StuckEvent, Switch, Trial
+from data.records import (
+    Comparison,
+    Device,
+    EventKind,
+    ExternalRun,
+    Outcome,
+    Participant,
+    Slot,
+    Source,
+    StuckEvent,
+    Switch,
+    Trial,
+    TrialSource,
+)
 from data.restoring import import_export
 from data.store import Store
 from data.store.rows import same
@@ -43,6 +56,9 @@ def sessions(draw):
         consent_version=draw(st.none() | texts),
         consented_at=draw(st.none() | times),
         finished_at=draw(st.none() | times),
+        background_at=draw(st.none() | times),
+        device=draw(st.none() | st.sampled_from(get_args(Device))),
+        practised_at=draw(st.none() | times),
     )
     a, b = draw(st.permutations(STUDY.mode_names))[:2]
     comparison = Comparison(
@@ -54,6 +70,7 @@ def sessions(draw):
         b,
         draw(st.booleans()),
         draw(st.none() | times),
+        restarted_at=draw(st.none() | times),
     )
     trials = []
     for number in range(draw(st.integers(0, 2))):
@@ -65,7 +82,7 @@ def sessions(draw):
             slot="A",
             number=number + 1,
             mode=a,
-            source="simulated" if source == "simulated" else "observed",
+            source=draw(st.sampled_from(get_args(TrialSource))),
             outcome=draw(st.sampled_from(get_args(Outcome))),
             started_at=draw(times),
             duration_s=draw(numbers),
@@ -83,7 +100,13 @@ def sessions(draw):
     answers = draw(
         st.none() | st.fixed_dictionaries({q.name: st.sampled_from(q.scale) for q in STUDY.questions})
     )
-    return participant, comparison, trials, switches, answers, draw(times)
+    run = None
+    if draw(st.booleans()):
+        loaded = draw(st.none() | st.sampled_from(get_args(Slot)))
+        started = draw(st.none() | times) if loaded else None
+        run = ExternalRun(comparison.id, draw(st.sampled_from(get_args(Slot))), loaded, started)
+    is_withdrawn = draw(st.booleans())
+    return participant, comparison, trials, switches, answers, draw(times), run, is_withdrawn
 
 
 cohorts = st.lists(sessions(), max_size=3, unique_by=lambda session: session[0].id.lower()).filter(
@@ -93,7 +116,7 @@ cohorts = st.lists(sessions(), max_size=3, unique_by=lambda session: session[0].
 
 def put(store: Store, cohort):
     stored = store.add_study(STUDY, TEXT)
-    for participant, comparison, trials, switches, answers, at in cohort:
+    for participant, comparison, trials, switches, answers, at, run, is_withdrawn in cohort:
         store.add_participant(stored, participant)
         store.add_comparisons([comparison])
         for trial, content in trials:
@@ -104,7 +127,15 @@ def put(store: Store, cohort):
             store.add_switch(switch)
         if answers is not None:
             store.submit_responses(comparison.id, answers, at)
+        if run is not None:
+            store.want_slot(run.comparison, run.wanted)
+            store.load_slot(run.comparison, run.loaded)
+            if run.started_at is not None:
+                store.start_run(run.comparison, run.started_at)
+            assert store.external_run(run.comparison) == run
         store.log(participant.id, "took part", {"note": participant.consent_version or ""}, at)
+        if is_withdrawn:
+            store.withdraw(participant.id, "somebody", at)
     return stored
 
 
@@ -118,6 +149,7 @@ def everything(store: Store):
         store.trials(study),
         tuple(store.responses(c.id) for c in comparisons),
         tuple(store.switches(c.id) for c in comparisons),
+        tuple(store.external_run(c.id) for c in comparisons),
         store.audit_log(),
     )
 
@@ -136,9 +168,11 @@ def test_records_survive_the_store_its_export_and_a_store_rebuilt_from_that(empt
         with Store.open(folder / "one.sqlite") as one, Store.open(folder / "two.sqlite") as two:
             study = put(one, cohort)
             kept = everything(one)
-            given_people = {participant.id: participant for participant, *_ in cohort}
-            assert {p.id: p for p in kept[1]} == given_people
-            given_trials = {trial.id: trial for _, _, trials, *_ in cohort for trial, _ in trials}
+            given_people = {participant.id: participant for participant, *_, gone in cohort if not gone}
+            assert {p.id: p for p in kept[1] if p.withdrawn_at is None} == given_people
+            given_trials = {
+                trial.id: trial for _, _, trials, *_, gone in cohort for trial, _ in trials if not gone
+            }
             assert all(same(trial, given_trials[trial.id]) for trial in kept[3])
             assert len(kept[3]) == len(given_trials)
 

@@ -256,7 +256,8 @@ def test_unblinding_is_kept_once_and_for_that_revision_alone(store, fill, study)
 
 
 def test_consent_once_given_stands(store, one, noon):
-    agreed = store.record_consent("anna", "1", noon, {"age": "40"})
+    agreed = store.record_consent("anna", "1", noon)
+    assert (agreed.consent_version, agreed.consented_at) == ("1", noon)
     assert store.record_consent("anna", "1", noon + timedelta(days=1)) == agreed
     assert store.participant("anna") == agreed
     with pytest.raises(ElbowroomError, match="agreed to version 1"):
