@@ -27,15 +27,16 @@ class Frames:
     q_rad : ndarray, shape (n, 6)
         Joint angles.
     cursor_m, hand_m : ndarray, shape (n, 2)
-        y and z on the wall (base frame). The hand is where the operator's spring would come to rest: beside
-        the cursor by the force along the wall over the operator's stiffness.
+        y and z on the wall (base frame). The hand is where its spring would come to rest: beside the cursor
+        by the force along the wall over the hand's stiffness.
     tilt_deg, tilt_direction_rad : ndarray, shape (n,)
         Lean of the nozzle; direction as somebody facing the wall sees it, 0 right, pi/2 up.
     is_blasting, is_enabled : ndarray of bool, shape (n,)
     speed_m_s : ndarray, shape (n,)
         Of the cursor.
     force_share : ndarray, shape (n,)
-        Force of the hand over the most this operator pulls, at most 1.
+        Force of the hand over the most it pulls, at most 1. A simulated operator's limit is on the whole
+        force, a person's on the force along the wall (``guidance``).
     """
 
     time_s: np.ndarray
@@ -59,14 +60,16 @@ def frames(recording: Recording, hz: float = FRAME_HZ) -> Frames:
     hz : float
         Frames per second, at most the recorded 25. Each frame is the last recorded state before its time.
     """
-    states, operator = recording.states, recording.facts.operator
+    states, facts = recording.states, recording.facts
     n = states.size
     q = states["q"].astype(np.float64)
     force = np.empty((n, 3))
     _forces(q, np.ascontiguousarray(recording.counts[::STATE_EVERY]), force)
     cursor = np.column_stack([states["cursor_y"], states["cursor_z"]]).astype(np.float64)
     triggers = recording.triggers[::STATE_EVERY]
-    share = np.sqrt((force**2).sum(axis=1)) / operator["force_cap_n"]
+    person = facts.operator or facts.hand or {}
+    limited = force if facts.operator else force[:, 1:]
+    share = np.sqrt((limited**2).sum(axis=1)) / person["force_cap_n"]
     count = int((n - 1) * hz / FRAME_HZ + 1e-9) + 1
     kept = np.minimum((np.arange(count) * (FRAME_HZ / hz) + 1e-9).astype(np.int64), n - 1)
     return Frames(
@@ -78,7 +81,7 @@ def frames(recording: Recording, hz: float = FRAME_HZ) -> Frames:
         is_blasting=((triggers & BLAST) != 0)[kept],
         is_enabled=((triggers & ENABLE) != 0)[kept],
         speed_m_s=_speed(cursor)[kept],
-        hand_m=(cursor + force[:, 1:] / operator["stiffness_n_m"])[kept],
+        hand_m=(cursor + force[:, 1:] / person["stiffness_n_m"])[kept],
         force_share=np.minimum(share, 1.0)[kept],
     )
 

@@ -54,7 +54,10 @@ JOINT_SPEED_SHARE = 0.98
 limit itself, so a joint that gets there is asked for more than it can do."""
 
 COMPLETED, STUCK, STOPPED, TIMED_OUT, DIVERGED = range(5)
-"""How a lap ends."""
+"""How a lap ends. A lap that was given up has ended like one that took too long."""
+
+GOES_ON = -1
+"""What stands in place of an ending while there is none."""
 
 TICK = np.dtype(
     [
@@ -104,6 +107,16 @@ def count(measured: np.ndarray, counts: np.ndarray) -> None:
 
 
 @compiled(None)
+def sense(T: np.ndarray, wrench: np.ndarray, measured: np.ndarray, counts: np.ndarray) -> None:
+    """Write what the sensor measures, and counts, of a hand's wrench at the handle centre, base frame.
+
+    Shapes (4, 4), (6,), (6,) and int16 (6,); the pose of the handle comes first.
+    """
+    sensor_wrench(T, wrench, measured)
+    count(measured, counts)
+
+
+@compiled(None)
 def counted(counts: np.ndarray, measured: np.ndarray) -> None:
     """Write the wrench [N, N m] that counts stand for; the inverse of `count`."""
     for i in range(6):
@@ -124,7 +137,7 @@ def handle_wrench(T: np.ndarray, measured: np.ndarray, wrench: np.ndarray) -> No
 
 
 @compiled(None)
-def _observe(q: np.ndarray, qdot: np.ndarray, T: np.ndarray, wall: Wall, edge: int, tick: Tick) -> int:
+def observe(q: np.ndarray, qdot: np.ndarray, T: np.ndarray, wall: Wall, edge: int, tick: Tick) -> int:
     """Write what is known at the beginning of a tick; the edge that the cursor is on is returned."""
     handle_pose(q, T)
     y, z = cursor(wall, T)
@@ -141,6 +154,66 @@ def _observe(q: np.ndarray, qdot: np.ndarray, T: np.ndarray, wall: Wall, edge: i
     tick.tilt_direction = tilt_direction(T)
     tick.place = progress(wall, edge, y, z)
     return edge
+
+
+@compiled(None)
+def respond(
+    step: Callable[[int, int], None],
+    model: int,
+    data: int,
+    q: np.ndarray,
+    qdot: np.ndarray,
+    target: np.ndarray,
+    hand: np.ndarray,
+    mode: ModeFunction,
+    parameters: np.ndarray,
+    controller: np.ndarray,
+    state: np.ndarray,
+    counts: np.ndarray,
+    trigger: int,
+    edge: int,
+    low: int,
+    sigma_below: float,
+    dwell: int,
+    tick: Tick,
+    T: np.ndarray,
+    J: np.ndarray,
+    measured: np.ndarray,
+) -> tuple[int, int]:
+    """What robot and controller make of the counts and the trigger of a tick, after `observe`.
+
+    Parameters are those of `_lap`, and `edge` from `observe`; `low` is in how many ticks on end sigma has
+    been small; T, J and measured are scratch, T with the pose that `observe` wrote.
+
+    Returns
+    -------
+    tuple of int
+        The new `low`, and how the lap ends in this tick, or `GOES_ON`. The physics has taken its steps only
+        if it goes on.
+    """
+    counted(counts, measured)
+    handle_wrench(T, measured, hand)
+    control_step(
+        mode, parameters, controller, q, measured, trigger & ENABLE != 0, CONTROL_PERIOD_S, state, T, J
+    )
+    tick.sigma = state[SIGMA]
+    for i in range(6):
+        tick.twist[i] = state[_TWIST + i]
+
+    low = low + 1 if tick.sigma < sigma_below else 0
+    if edge == EDGES:
+        return low, COMPLETED
+    if low > dwell:
+        return low, STUCK
+    for i in range(6):
+        if abs(qdot[i]) >= _SPEED_STOPS[i]:
+            return low, STOPPED
+    if not np.isfinite(tick.cursor_y):
+        return low, DIVERGED
+    for sub in range(SUBSTEPS):
+        servo_target(state, (sub + 1) * PHYSICS_STEP_S, target)
+        step(model, data)
+    return low, GOES_ON
 
 
 def _lap(
@@ -201,37 +274,21 @@ def _lap(
     edge, low = 0, 0
     for k in range(ticks.shape[0]):
         tick = ticks[k]
-        edge = _observe(q, qdot, T, wall, edge, tick)
+        edge = observe(q, qdot, T, wall, edge, tick)
         if not replaying:
             seen = ticks[max(k - delay, 0)]
             blasting = hand_wrench(
                 operator, mind, wall, anticipated, seen.cursor_y, seen.cursor_z, seen.tilt, T, noise[k],
                 CONTROL_PERIOD_S, wrench,
             )  # fmt: skip
-            sensor_wrench(T, wrench, measured)
-            count(measured, counts[k])
+            sense(T, wrench, measured, counts[k])
             triggers[k] = ENABLE | BLAST if blasting else ENABLE
-        counted(counts[k], measured)
-        handle_wrench(T, measured, hand)
-        enabled = triggers[k] & ENABLE != 0
-        control_step(mode, parameters, controller, q, measured, enabled, CONTROL_PERIOD_S, state, T, J)
-        tick.sigma = state[SIGMA]
-        for i in range(6):
-            tick.twist[i] = state[_TWIST + i]
-
-        low = low + 1 if tick.sigma < sigma_below else 0
-        if edge == EDGES:
-            return k + 1, COMPLETED
-        if low > dwell:
-            return k + 1, STUCK
-        for i in range(6):
-            if abs(qdot[i]) >= _SPEED_STOPS[i]:
-                return k + 1, STOPPED
-        if not np.isfinite(tick.cursor_y):
-            return k + 1, DIVERGED
-        for sub in range(SUBSTEPS):
-            servo_target(state, (sub + 1) * PHYSICS_STEP_S, target)
-            step(model, data)
+        low, ending = respond(
+            step, model, data, q, qdot, target, hand, mode, parameters, controller, state, counts[k],
+            triggers[k], edge, low, sigma_below, dwell, tick, T, J, measured,
+        )  # fmt: skip
+        if ending != GOES_ON:
+            return k + 1, ending
     return ticks.shape[0], TIMED_OUT
 
 

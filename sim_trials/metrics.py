@@ -35,6 +35,8 @@ class Lap:
 
     Attributes
     ----------
+    is_held : ndarray of bool, shape (n,)
+        Whether the enable trigger is held, and with it the handle.
     jerk_m_s3 : ndarray, shape (n,)
         Magnitude of the handle's low-passed jerk; NaN for laps under 0.4 s.
     moved_m : ndarray, shape (n,)
@@ -49,6 +51,7 @@ class Lap:
     tilt_deg: np.ndarray
     sigma: np.ndarray
     opacity: np.ndarray
+    is_held: np.ndarray
     is_blasting: np.ndarray
     moved_m: np.ndarray
     commanded: np.ndarray
@@ -60,12 +63,17 @@ Value = Callable[[Lap, np.ndarray], float]
 
 @dataclass(frozen=True)
 class Metric:
-    """One metric: its stem and unit make the name, ``value`` computes it over some ticks of a lap."""
+    """One metric: its stem and unit make the name, ``value`` computes it over some ticks of a lap.
+
+    ``while_held``: the ticks in which nobody holds the handle don't count, so that a pause is no sign of
+    little force or low speed.
+    """
 
     stem: str
     unit: str
     meaning: str
     value: Value
+    while_held: bool = False
 
     def name(self, phase_name: str = "") -> str:
         """E.g. ``force_mean_n``, or ``force_mean_edge_n`` for a phase."""
@@ -86,16 +94,35 @@ def _gain(lap: Lap, at: np.ndarray) -> float:
 
 METRICS: tuple[Metric, ...] = (
     Metric("duration", "s", "time taken", lambda lap, at: float(at.sum() * CONTROL_PERIOD_S)),
-    Metric("force_mean", "n", "mean force of the hand", lambda lap, at: float(lap.force_n[at].mean())),
+    Metric(
+        "force_mean",
+        "n",
+        "mean force of the hand while it holds the handle",
+        lambda lap, at: float(lap.force_n[at].mean()),
+        while_held=True,
+    ),
     Metric("force_peak", "n", "largest force of the hand", lambda lap, at: float(lap.force_n[at].max())),
-    Metric("speed_mean", "m_s", "mean speed of the cursor", lambda lap, at: float(lap.speed_m_s[at].mean())),
+    Metric(
+        "speed_mean",
+        "m_s",
+        "mean speed of the cursor while the handle is held",
+        lambda lap, at: float(lap.speed_m_s[at].mean()),
+        while_held=True,
+    ),
     Metric(
         "jerk_rms",
         "m_s3",
-        "root mean square of the handle's jerk, low-passed at 5 Hz",
+        "root mean square of the handle's jerk while it is held, low-passed at 5 Hz",
         lambda lap, at: float(np.sqrt((lap.jerk_m_s3[at] ** 2).mean())),
+        while_held=True,
     ),
-    Metric("tilt_mean", "deg", "mean tilt of the nozzle", lambda lap, at: float(lap.tilt_deg[at].mean())),
+    Metric(
+        "tilt_mean",
+        "deg",
+        "mean tilt of the nozzle while the handle is held",
+        lambda lap, at: float(lap.tilt_deg[at].mean()),
+        while_held=True,
+    ),
     Metric("tilt_peak", "deg", "largest tilt of the nozzle", lambda lap, at: float(lap.tilt_deg[at].max())),
     Metric(
         "sigma_min", "", "smallest singular value met, SI units", lambda lap, at: float(lap.sigma[at].min())
@@ -147,9 +174,10 @@ def metrics(trace: Trace, study: Study) -> dict[str, float]:
     values = {}
     for number, name in enumerate(PHASES):
         at = code == number if number else everywhere
-        if at.any():
-            for metric in METRICS:
-                values[metric.name(name if number else "")] = metric.value(lap, at)
+        for metric in METRICS:
+            counted = at & lap.is_held if metric.while_held else at
+            if counted.any():
+                values[metric.name(name if number else "")] = metric.value(lap, counted)
     values[LONGEST_LOCK] = float(ticks_below(lap.sigma, study.stuck.sigma_below).max() * CONTROL_PERIOD_S)
     return {name: value for name, value in values.items() if np.isfinite(value)}
 
@@ -205,6 +233,7 @@ def _lap(trace: Trace, study: Study) -> Lap:
         tilt_deg=np.degrees(ticks["tilt"]),
         sigma=ticks["sigma"],
         opacity=paint_opacities(study.maze, study.feedback, speed),
+        is_held=trace.is_enabled,
         is_blasting=trace.is_blasting,
         moved_m=np.hypot(np.diff(y, append=y[-1:]), np.diff(z, append=z[-1:])),
         commanded=ticks["twist"][:, :3],

@@ -35,6 +35,7 @@ from sim_trials.maze import (
     point_at,
     reaches_corner,
 )
+from sim_trials.spring import spring_force, spring_moment
 
 NOISE_CORRELATION_S = 0.05
 """Correlation time of tremor and force noise [s]."""
@@ -315,7 +316,6 @@ def hand_wrench(
     if lean > operator.tilt_limit_rad:
         lean_y *= operator.tilt_limit_rad / lean
         lean_z *= operator.tilt_limit_rad / lean
-    lean_x = math.sqrt(1.0 - lean_y * lean_y - lean_z * lean_z)
 
     # Extra pull for what stays behind; it stops growing when the arm has no more to give.
     if mind.force_share < 1.0 and mind.retreat_s <= 0.0:
@@ -324,10 +324,9 @@ def hand_wrench(
     mind.pull_y_n -= mind.pull_y_n * dt / ESCALATION_FADE_S
     mind.pull_z_n -= mind.pull_z_n * dt / ESCALATION_FADE_S
 
-    stiffness, distance = operator.stiffness_n_m, wall.handle_distance_m
-    fx = stiffness * (wall.wall_x_m - distance * lean_x - hand[0, 3])
-    fy = stiffness * (aim_y - distance * lean_y - hand[1, 3]) + mind.pull_y_n
-    fz = stiffness * (aim_z - distance * lean_z - hand[2, 3]) + mind.pull_z_n
+    fx, fy, fz = spring_force(operator.stiffness_n_m, wall, aim_y, aim_z, lean_y, lean_z, hand)
+    fy += mind.pull_y_n
+    fz += mind.pull_z_n
     force = math.sqrt(fx * fx + fy * fy + fz * fz)
     mind.force_share = force / operator.force_cap_n
     if mind.force_share > 1.0:
@@ -336,18 +335,9 @@ def hand_wrench(
     mind.felt_y_n += dt / FORCE_SENSE_S * (fy - mind.felt_y_n)
     mind.felt_z_n += dt / FORCE_SENSE_S * (fz - mind.felt_z_n)
 
-    # Twist: the nozzle (hand z) towards the wanted lean, and the handles (hand x) kept level.
-    nx, ny, nz = hand[0, 2], hand[1, 2], hand[2, 2]
-    roll = -hand[2, 0]
-    twist = operator.rotation_stiffness_nm_rad
-    mx = twist * (ny * lean_z - nz * lean_y + roll * nx)
-    my = twist * (nz * lean_x - nx * lean_z + roll * ny)
-    mz = twist * (nx * lean_y - ny * lean_x + roll * nz)
-    moment = math.sqrt(mx * mx + my * my + mz * mz)
-    if moment > operator.torque_cap_nm:
-        share = operator.torque_cap_nm / moment
-        mx, my, mz, moment = mx * share, my * share, mz * share, operator.torque_cap_nm
-
+    mx, my, mz, moment = spring_moment(
+        operator.rotation_stiffness_nm_rad, operator.torque_cap_nm, lean_y, lean_z, hand
+    )
     spread = math.hypot(operator.noise_share * force, operator.tremor_n)
     spread_m = math.hypot(operator.noise_share * moment, TREMOR_LEVER_M * operator.tremor_n)
     wrench[0], wrench[1], wrench[2] = fx + spread * noise[0], fy + spread * noise[1], fz + spread * noise[2]

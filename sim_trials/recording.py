@@ -18,10 +18,13 @@ import pyarrow.parquet as pq
 
 from data.errors import ElbowroomError, InputError
 from data.locations import atomic_write
+from sim_trials.guidance import Hand
 from sim_trials.loop import COMPLETED, DIVERGED, TICK
 from sim_trials.operators import Operator
 
-FORMAT = "lap/1"
+FORMAT = "lap/2"
+_OLD_FORMAT = "lap/1"
+"""Without people: the facts have no ``hand``. It is still read."""
 STATE_EVERY = 5
 """Control ticks from one kept state to the next: 25 Hz."""
 
@@ -55,8 +58,10 @@ class Facts:
         Name and hash of the study it was run for.
     mode, method, parameters : str, str, dict
         The mode's name, its method and all of the method's parameters.
-    operator : dict
-        Fields of the ``operators.Operator``.
+    operator : dict or None
+        Fields of the ``operators.Operator``; None if a person guided the robot.
+    hand : dict or None
+        Fields of the ``guidance.Hand`` that a person's pointer moved; None for simulated operators.
     seed, lap : int
         Of the hand's unsteadiness, and which lap under this condition it is.
     start_rad : tuple of float
@@ -72,7 +77,8 @@ class Facts:
     mode: str
     method: str
     parameters: dict[str, float]
-    operator: dict[str, float]
+    operator: dict[str, float] | None
+    hand: dict[str, float] | None
     seed: int
     lap: int
     start_rad: tuple[float, ...]
@@ -222,14 +228,20 @@ def _recording(table: pa.Table) -> Recording:
     if _KEY not in metadata:
         raise ValueError("it says nothing about a lap")
     facts = json.loads(metadata[_KEY])
-    if facts.pop("format", None) != FORMAT:
+    written_as = facts.pop("format", None)
+    if written_as == _OLD_FORMAT:
+        facts["hand"] = None
+    elif written_as != FORMAT:
         raise ValueError("it has another format")
     facts["start_rad"] = tuple(facts["start_rad"])
-    Operator(**facts["operator"])
+    operator, hand = facts["operator"], facts["hand"]
+    if (operator is None) == (hand is None):
+        raise ValueError("it must name either an operator or a hand")
+    person = Hand(**hand) if operator is None else Operator(**operator)
     n = table.num_rows
     if n == 0 or len(facts["start_rad"]) != 6 or facts["ending"] not in range(COMPLETED, DIVERGED + 1):
         raise ValueError("its facts are incomplete")
-    numbers = (*facts["start_rad"], *facts["parameters"].values(), *facts["operator"].values())
+    numbers = (*facts["start_rad"], *facts["parameters"].values(), *asdict(person).values())
     if not all(isinstance(number, int | float) for number in (*numbers, facts["seed"], facts["lap"])):
         raise ValueError("some of its facts should be numbers and are not")
     counts = np.empty((n, 6), np.int16)

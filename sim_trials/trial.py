@@ -1,4 +1,4 @@
-"""One simulated lap of the maze under one mode, and the same lap once more from its recording."""
+"""One lap of the maze under one mode: simulated, guided by a person, or once more from its recording."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -12,16 +12,17 @@ from data.records import Outcome, StuckEvent
 from data.study import Mode, Study
 from sim_trials.admittance import CONTROL_PERIOD_S, initial_state, pack_controller
 from sim_trials.events import dwell_ticks, events
+from sim_trials.guidance import HAND, Hand
 from sim_trials.loop import COMPLETED, DIVERGED, STOPPED, STUCK, TICK, TIMED_OUT, lap_loop
 from sim_trials.maze import wall_of
 from sim_trials.metrics import metrics, phases
 from sim_trials.model import Robot, new_robot, physics_step
 from sim_trials.modes.registry import resolve
-from sim_trials.operators import Mind, Operator, hand_noise
+from sim_trials.operators import Mind, Operator, draw_operator, hand_noise
 from sim_trials.record import record_of
 from sim_trials.recording import Facts, Recording, ReplayError, check_same_study, kept_states
 from sim_trials.start import start_angles
-from sim_trials.trace import Trace
+from sim_trials.trace import LapInputs, Trace
 
 LONGEST_LAP_S = 120.0
 """After this time a simulated operator gives up [s]; an ordinary lap takes 30-60 s."""
@@ -46,7 +47,7 @@ class TrialResult:
     Attributes
     ----------
     outcome : Outcome
-        ``completed``, ``stuck``, ``abandoned`` (took too long) or ``failed`` (protective stop).
+        ``completed``, ``stuck``, ``abandoned`` (given up, or took too long) or ``failed`` (protective stop).
     duration_s : float
     metrics : mapping
         Objective metrics by name, units in the names (``sim_trials.metrics``).
@@ -82,33 +83,47 @@ def run_trial(study: Study, mode_name: str, operator: Operator, *, seed: int, la
         If the study has no such mode, or the mode or the maze can't be had.
     """
     trace = simulate(study, mode_name, operator, seed=seed, lap=lap)
-    mode = mode_of(study, mode_name)
-    resolved = resolve(mode)
-    facts = Facts(
-        study=study.name,
-        study_sha256=study.sha256,
-        mode=mode.name,
-        method=mode.method,
-        parameters=dict(zip(resolved.method.parameter_names, resolved.values, strict=True)),
-        operator=asdict(operator),
-        seed=seed,
-        lap=lap,
-        start_rad=start_angles(study.maze),
-        ending=trace.ending,
-        versions=_versions(),
-    )
-    return _result(study, trace, facts)
+    return _result(study, trace, _facts(study, mode_name, trace.ending, seed, lap, operator=operator))
+
+
+def finish(study: Study, mode_name: str, inputs: LapInputs, *, lap: int, seed: int = 0) -> TrialResult:
+    """What came of a lap that a person guided, from what the hand did.
+
+    Parameters
+    ----------
+    study : Study
+    mode_name : str
+        Name of one of the study's modes.
+    inputs : LapInputs
+        From ``live.LiveTrial.inputs``.
+    lap : int
+        Which lap under this condition it is, from 1.
+    seed : int
+        Kept with the recording; nothing in a person's lap depends on it.
+
+    Raises
+    ------
+    InputError
+        If the study has no such mode, or the mode or the maze can't be had.
+    ReplayError
+        If the lap does not end as it did when it was guided.
+    """
+    mode, start = mode_of(study, mode_name), start_angles(study.maze)
+    trace = _run(study, mode, start, inputs.counts.copy(), inputs.triggers.copy())
+    if trace.ending != inputs.ending or trace.ticks.size != inputs.triggers.size:
+        raise ReplayError(
+            f"the lap ends as {OUTCOMES[trace.ending]} after {trace.duration_s:.3f} s when it is run again;"
+            f" guided, it was {OUTCOMES[inputs.ending]} after {inputs.triggers.size * CONTROL_PERIOD_S:.3f} s"
+        )
+    return _result(study, trace, _facts(study, mode_name, trace.ending, seed, lap, hand=HAND))
 
 
 def simulate(study: Study, mode_name: str, operator: Operator, *, seed: int, lap: int = 1) -> Trace:
     """The full-rate time series of the lap that `run_trial` would report on; same arguments."""
-    noise = hand_noise(seed, lap, _LONGEST_LAP, CONTROL_PERIOD_S)
     counts = np.empty((_LONGEST_LAP, 6), np.int16)
     triggers = np.empty(_LONGEST_LAP, np.uint8)
-    start = start_angles(study.maze)
-    return _run(
-        study, mode_of(study, mode_name), operator, lap, start, noise, counts, triggers, replaying=False
-    )
+    hand = _SimulatedHand(operator, lap, hand_noise(seed, lap, _LONGEST_LAP, CONTROL_PERIOD_S))
+    return _run(study, mode_of(study, mode_name), start_angles(study.maze), counts, triggers, hand)
 
 
 def replay(recording: Recording, study: Study) -> TrialResult:
@@ -129,18 +144,7 @@ def replay_trace(recording: Recording, study: Study) -> Trace:
     facts = recording.facts
     check_same_study(facts, study.sha256)
     mode = Mode(name=facts.mode, method=facts.method, parameters=facts.parameters)
-    operator = Operator(**facts.operator)  # type: ignore[arg-type]
-    trace = _run(
-        study,
-        mode,
-        operator,
-        facts.lap,
-        facts.start_rad,
-        np.empty((0, 6)),
-        recording.counts.copy(),
-        recording.triggers.copy(),
-        replaying=True,
-    )
+    trace = _run(study, mode, facts.start_rad, recording.counts.copy(), recording.triggers.copy())
     if trace.ending != facts.ending or kept_states(trace.ticks).tobytes() != recording.states.tobytes():
         then, now = facts.versions, _versions()
         changed = ", ".join(
@@ -170,18 +174,28 @@ def _robot() -> Robot:
     return new_robot(np.zeros(6))
 
 
+@dataclass(frozen=True)
+class _SimulatedHand:
+    """A simulated operator in a certain lap, with its unsteadiness (``operators.hand_noise``)."""
+
+    operator: Operator
+    lap: int
+    noise: np.ndarray
+
+
+_NO_HAND = _SimulatedHand(draw_operator(0), 1, np.empty((0, 6)))
+"""What stands in for an operator where the loop reads counts and triggers and asks nobody."""
+
+
 def _run(
     study: Study,
     mode: Mode,
-    operator: Operator,
-    lap: int,
     start: tuple[float, ...],
-    noise: np.ndarray,
     counts: np.ndarray,
     triggers: np.ndarray,
-    *,
-    replaying: bool,
+    hand: _SimulatedHand = _NO_HAND,
 ) -> Trace:
+    """Run a lap with a simulated hand, or without one from the given counts and triggers."""
     resolved = resolve(mode)
     robot, q = _robot(), np.array(start)
     robot.place(q)
@@ -199,19 +213,47 @@ def _run(
         pack_controller(study.controller),
         initial_state(q),
         record_of(wall_of(study.maze, study.feedback)),
-        record_of(operator),
+        record_of(hand.operator),
         record_of(Mind()),
-        operator.anticipated_tilt_rad(lap),
-        round(operator.visual_delay_s / CONTROL_PERIOD_S),
-        noise,
+        hand.operator.anticipated_tilt_rad(hand.lap),
+        round(hand.operator.visual_delay_s / CONTROL_PERIOD_S),
+        hand.noise,
         study.stuck.sigma_below,
         dwell_ticks(study.stuck.dwell_s),
-        replaying,
+        hand is _NO_HAND,
         counts,
         triggers,
         ticks,
     )
     return Trace(ticks[:n].copy(), counts[:n].copy(), triggers[:n].copy(), ending)
+
+
+def _facts(
+    study: Study,
+    mode_name: str,
+    ending: int,
+    seed: int,
+    lap: int,
+    *,
+    operator: Operator | None = None,
+    hand: Hand | None = None,
+) -> Facts:
+    mode = mode_of(study, mode_name)
+    resolved = resolve(mode)
+    return Facts(
+        study=study.name,
+        study_sha256=study.sha256,
+        mode=mode.name,
+        method=mode.method,
+        parameters=dict(zip(resolved.method.parameter_names, resolved.values, strict=True)),
+        operator=asdict(operator) if operator else None,
+        hand=asdict(hand) if hand else None,
+        seed=seed,
+        lap=lap,
+        start_rad=start_angles(study.maze),
+        ending=ending,
+        versions=_versions(),
+    )
 
 
 def _result(study: Study, trace: Trace, facts: Facts) -> TrialResult:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ import pytest
 
 from data.errors import InputError
 from data.study import Study
+from sim_trials.guidance import HAND
 from sim_trials.operators import draw_operator
 from sim_trials.recording import STATE_EVERY, file_sha256, read
 from sim_trials.trial import TrialResult, replay, simulate
@@ -100,6 +101,20 @@ def altered(table: pa.Table, path: Path, **facts: object) -> Path:
     return path
 
 
+def test_a_recording_from_before_people_could_guide_is_still_read(
+    study: Study, first_lap: FirstLap, tmp_path: Path
+) -> None:
+    path = tmp_path / "lap.parquet"
+    first_lap("M2").recording.write(path)
+    table = pq.read_table(path)
+    facts = json.loads(table.schema.metadata[b"elbowroom"])
+    del facts["hand"]
+    old = json.dumps(facts | {"format": "lap/1"}).encode()
+    pq.write_table(table.replace_schema_metadata({b"elbowroom": old}), path)
+    assert read(path) == first_lap("M2").recording
+    assert replay(read(path), study) == first_lap("M2")
+
+
 def test_what_is_no_recording_is_refused_in_one_line(first_lap: FirstLap, tmp_path: Path) -> None:
     good = tmp_path / "good.parquet"
     sha256 = first_lap("M1").recording.write(good)
@@ -116,13 +131,16 @@ def test_what_is_no_recording_is_refused_in_one_line(first_lap: FirstLap, tmp_pa
     altered(table, tmp_path / "fact.parquet", mood="good")
     altered(table, tmp_path / "word.parquet", start_rad=["a"] * 6)
     altered(table, tmp_path / "list.parquet", operator=[1.0, 2.0])
+    altered(table, tmp_path / "nobody.parquet", operator=None)
+    altered(table, tmp_path / "two people.parquet", hand=asdict(HAND))
+    altered(table, tmp_path / "stranger.parquet", operator=None, hand={"strength": 1.0})
     altered(table.drop_columns(["moment_y"]), tmp_path / "column.parquet")
     altered(table.slice(1), tmp_path / "gaps.parquet")
     altered(table.slice(0, 0), tmp_path / "rows.parquet")
     floats = table.column("force_x").cast(pa.float64())
     altered(table.set_column(0, "force_x", floats), tmp_path / "type.parquet")
     bad = sorted(set(tmp_path.glob("*.parquet")) - {good})
-    assert len(bad) == 14
+    assert len(bad) == 17
     for path in [*bad, tmp_path / "missing.parquet"]:
         with pytest.raises(InputError) as caught:
             read(path)
