@@ -8,7 +8,7 @@ LOG = logging.getLogger("elbowroom")
 """For what the person who runs the server should know: a full disk, a busy store."""
 
 _TOKEN = re.compile(r"/(join|researcher)/[^\s/?]+")
-_STREAMLIT = ("/_stcore", "/static/", "/stage/", "/media/", "/favicon")
+_STREAMLIT = ("/_stcore", "/static/", "/stage/", "/console-modules/", "/media/", "/favicon")
 
 
 def masked(path: str) -> str:

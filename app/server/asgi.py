@@ -7,14 +7,16 @@ from pathlib import Path
 from starlette.middleware import Middleware
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
-from starlette.routing import Mount, Route
+from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 from streamlit.starlette import App
 
-from app.server import entry, participant_routes
+from app.console import replay_routes
+from app.server import entry, participant_routes, passphrase
 from app.server.desk import Desk, open_desk
 from app.server.guard import Guard
+from app.server.live import route
 
 _APP = Path(__file__).resolve().parent.parent
 
@@ -25,10 +27,15 @@ def build_app(desk: Desk) -> App:
 
     @asynccontextmanager
     async def open_hours(_: App) -> AsyncIterator[None]:
-        desk.laps.warm_up()
+        if desk.live is not None:
+            await desk.live.start()
+        elif desk.study.protocol.trial_source == "observed":
+            desk.laps.warm_up()
         try:
             yield
         finally:
+            if desk.live is not None:
+                await desk.live.close()
             desk.laps.close()
 
     return App(
@@ -37,6 +44,9 @@ def build_app(desk: Desk) -> App:
             Route("/healthz", _health, methods=["GET"]),
             *entry.ROUTES,
             *participant_routes.ROUTES,
+            *passphrase.ROUTES,
+            *replay_routes.ROUTES,
+            WebSocketRoute(route.PATH, route.LiveRoute()),
             Mount("/stage", StageModules(directory=_APP / "stage" / "modules")),
         ],
         middleware=[Middleware(Guard)],

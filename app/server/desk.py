@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from app.server.laps import LapKeeper
+from app.server.live.sessions import LiveSessions
 from data.records import Clock
 from data.store import Store, StoredStudy
 from data.study import Study
@@ -10,7 +11,9 @@ from data.study import Study
 
 @dataclass(frozen=True)
 class Desk:
-    """The study on offer, the store it goes to and the laps that are shown.
+    """The study on offer, the store it goes to, the laps that are shown and the robots in people's hands.
+
+    ``live`` is None where participants don't guide the robot themselves.
 
     Streamlit runs its script anew for every click and gives it no argument, so the desk is kept in this
     module: `open_desk` puts it there before the first request, `desk` hands it out.
@@ -19,6 +22,7 @@ class Desk:
     stored_study: StoredStudy
     store: Store
     laps: LapKeeper
+    live: LiveSessions | None = None
 
     @property
     def study(self) -> Study:

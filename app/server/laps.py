@@ -3,18 +3,16 @@
 The web process never runs the robot: a lap is computed in a worker process, so that pages stay quick.
 """
 
-import multiprocessing
-import signal
 import threading
 from collections import OrderedDict
 from collections.abc import Iterable
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from app.server.robot_pool import RobotPool
 from app.server.watched_lap import WatchedLap, run_lap, warm_up
 from data.records import Comparison, Slot
 from data.study import Study
@@ -49,15 +47,14 @@ class LapKeeper:
     def __init__(self, study: Study, recordings: Path, workers: int) -> None:
         self._study = study
         self._recordings = recordings
-        self._workers = workers
+        self.pool = RobotPool(workers)
         self._laps: OrderedDict[tuple[str, Slot, int], Future[WatchedLap]] = OrderedDict()
         self._lock = threading.Lock()
-        self._pool = self._new_pool()
 
     def warm_up(self) -> None:
         """Let the workers compile and load what a lap needs before anyone waits for it."""
-        for _ in range(self._workers):
-            self._pool.submit(warm_up, self._study)
+        for _ in range(self.pool.size):
+            self.pool.submit(warm_up, self._study)
 
     def lap(self, key: LapKey) -> Future[WatchedLap]:
         """A lap to come; the same key gives the same lap."""
@@ -67,19 +64,14 @@ class LapKeeper:
             if known is not None and not (known.done() and (known.cancelled() or known.exception())):
                 self._laps.move_to_end(name)
                 return known
-            job = (
+            future = self.pool.submit(
+                run_lap,
                 self._study,
                 key.comparison.mode_of(key.slot),
                 key.seed,
                 key.lap,
                 self._recordings / key.recording,
             )
-            try:
-                future = self._pool.submit(run_lap, *job)
-            except BrokenProcessPool:
-                # A worker was killed from outside: the others are gone with it, new ones take over.
-                self._pool = self._new_pool()
-                future = self._pool.submit(run_lap, *job)
             self._laps[name] = future
             while len(self._laps) > KEPT_LAPS:
                 self._laps.popitem(last=False)
@@ -92,23 +84,4 @@ class LapKeeper:
 
     def close(self) -> None:
         """Stop the workers; laps under way are given up."""
-        self._pool.shutdown(wait=True, cancel_futures=True)
-
-    def _new_pool(self) -> ProcessPoolExecutor:
-        # Spawned, never forked: the web process has threads.
-        return ProcessPoolExecutor(
-            self._workers, mp_context=multiprocessing.get_context("spawn"), initializer=_be_a_worker
-        )
-
-
-def _be_a_worker() -> None:
-    """Leave Ctrl-C to the parent, and go when the parent is gone however it went."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_follow_the_parent, daemon=True).start()
-
-
-def _follow_the_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        signal.raise_signal(signal.SIGTERM)
+        self.pool.close()

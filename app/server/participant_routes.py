@@ -14,7 +14,8 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from app.participant.progress import Progress, progress_of
+from app.operator import session as external_runs
+from app.participant.progress import Progress, may_still_take_part, progress_of
 from app.participant.watching import BadReport, WatchReport, store_report, watched_s
 from app.server.access_log import LOG
 from app.server.desk import desk
@@ -35,6 +36,8 @@ def _for_participants(handler: Handler) -> Callable[[Request], Awaitable[Respons
             progress = await run_in_threadpool(_progress, request)
             if progress is None:
                 return _answer(403, "no participant")
+            if not may_still_take_part(desk().study, progress.participant, desk().clock()):
+                return _answer(409, "the time to take part has passed")
             if progress.comparison is None:
                 return _answer(409, "no comparison is open")
             return await handler(request, progress)
@@ -55,6 +58,8 @@ def _progress(request: Request) -> Progress | None:
 
 async def _lap(request: Request, progress: Progress) -> Response:
     slot, lap = request.path_params["slot"], request.path_params["lap"]
+    if not _is_observed():
+        return _answer(404, "no such lap")
     if slot not in ("A", "B") or not 1 <= lap <= desk().study.protocol.laps_per_condition:
         return _answer(404, "no such lap")
     watched = await asyncio.wrap_future(desk().laps.lap(progress.lap_key(desk().study, slot, lap)))
@@ -64,6 +69,8 @@ async def _lap(request: Request, progress: Progress) -> Response:
 async def _watched(request: Request, progress: Progress) -> Response:
     body = await _body(request)
     assert progress.comparison is not None
+    if not _is_observed():
+        return _answer(404, "nothing is watched here")
     if body is None:
         return _answer(422, "no report")
     if body.get("comparison") != progress.comparison.position:
@@ -103,14 +110,26 @@ async def _answers(request: Request, progress: Progress) -> Response:
         await run_in_threadpool(_submit, comparison.id, given, progress)
     except InputError:
         return _answer(422, "an answer is missing or not on its scale")
+    live = desk().live
+    if live is not None:
+        live.dismiss(progress.participant.id)
     return JSONResponse({"stored": True}, headers=_NO_STORE)
 
 
+def _is_observed() -> bool:
+    """Whether the study's laps are watched: nobody else may claim to have watched any."""
+    return desk().study.protocol.trial_source == "observed"
+
+
 def _submit(comparison_id: str, answers: dict[str, str], progress: Progress) -> None:
-    """Store the answers, and with the last ones that the participant has finished."""
+    """Store the answers, and with the last ones that the participant has finished.
+
+    A run that the operator began in the lab meanwhile ends with them.
+    """
     store, now = desk().store, desk().clock()
     with store.transaction():
         store.submit_responses(comparison_id, answers, now)
+        external_runs.finish(store, comparison_id, now)
         if progress.is_last:
             store.finish_participant(progress.participant.id, now)
 

@@ -2,6 +2,7 @@
 
 import signal
 import socket
+import sys
 from pathlib import Path
 from types import FrameType
 
@@ -11,6 +12,8 @@ from data.store.links import LinkKind
 
 _WILDCARDS = ("", "0.0.0.0", "::")
 _GOODBYE_S = 3
+_MOST_LAP_WORKERS = 4
+_SWITCH_S = 0.0005
 
 
 def serve(
@@ -19,6 +22,7 @@ def serve(
     host: str = "127.0.0.1",
     port: int = 8501,
     workers: int | None = None,
+    passphrase: str | None = None,
 ) -> None:
     """Serve a study until SIGINT or SIGTERM.
 
@@ -33,7 +37,10 @@ def serve(
     port : int
         0 takes any free one.
     workers : int, optional
-        Processes that run the robot; by default one per core, at most four.
+        Processes that run the robot; by default one per core. Where people guide it themselves, half as many
+        more finish their laps.
+    passphrase : str, optional
+        Opens the console beside the one-time link.
 
     Raises
     ------
@@ -42,14 +49,15 @@ def serve(
     ElbowroomError
         If the store or the port cannot be had.
     """
-    from app.cohort import check_can_be_simulated
-    from app.studies import open_study
+    from app.server.passphrase import set_passphrase
+    from app.studies import check_can_be_run, open_study
 
     # A wrong mode or a maze out of reach is found now, not when a participant waits for a lap.
     opened = open_study(study_source)
-    check_can_be_simulated(opened.study, str(study_source))
+    check_can_be_run(opened.study, str(study_source))
     listener = _listen(host, port)
     with listener, Store.open(store_url) as store:
+        set_passphrase(passphrase, store.clock)
         _run(listener, store, store.add_study(opened.study, opened.text), host, workers)
 
 
@@ -62,11 +70,21 @@ def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, 
     from app.server.asgi import build_app
     from app.server.desk import Desk
     from app.server.laps import LapKeeper
+    from app.server.live.sessions import LiveSessions
+    from app.server.live.socket import LiveSocket
     from app.server.settings import apply_settings
 
     apply_settings()
-    laps = LapKeeper(stored.study, store.recordings_folder, workers or min(os.cpu_count() or 1, 4))
-    app = build_app(Desk(stored, store, laps))
+    # So often does a page's script that computes hand the interpreter over: states that wait to be passed on
+    # must not wait for the usual 5 ms each time.
+    sys.setswitchinterval(_SWITCH_S)
+    size = workers or os.cpu_count() or 1
+    is_guided = stored.study.protocol.trial_source == "guided"
+    laps = LapKeeper(
+        stored.study, store.recordings_folder, min((size + 1) // 2 if is_guided else size, _MOST_LAP_WORKERS)
+    )
+    live = LiveSessions(stored.study, store, laps.pool, size) if is_guided else None
+    app = build_app(Desk(stored, store, laps, live))
     base = f"http://{_shown(host)}:{listener.getsockname()[1]}"
     lines = (
         f"participant: {base}/join/{_new_link(store, stored, 'participant')}",
@@ -84,7 +102,7 @@ def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, 
         log_config=LOGGING,
         timeout_graceful_shutdown=_GOODBYE_S,
         server_header=False,
-        ws="websockets-sansio",
+        ws=LiveSocket,
         ws_max_size=1 << 20,
     )
     _stop_quietly()

@@ -64,18 +64,20 @@ def visitor(desk: Desk, cookies: Mapping[str, str]) -> Visitor | None:
     if session is not None and session.study.id == desk.stored_study.id and session.participant is not None:
         return Visitor(cookie, desk.store.participant(session.participant))
     token, _, nonce = cookie.partition(".")
-    if not nonce or participant_link(desk, token) is None:
+    if not nonce:
         return None
-    return Visitor(cookie, None)
+    withdrawn = _withdrawn(desk, cookie)
+    if withdrawn is None and participant_link(desk, token) is None:
+        return None
+    return Visitor(cookie, withdrawn)
 
 
 def admit(desk: Desk, cookie: str) -> Participant:
     """Make a visitor who agrees a participant: number, consent, schedule and session in one transaction."""
     token = cookie.partition(".")[0]
     now = desk.clock()
-    participant_id = f"{desk.stored_study.sha256[:6]}-{token_sha256(cookie)[:10]}"
     with desk.store.transaction():
-        joined = desk.store.redeem_participant_link(token_sha256(token), participant_id, now)
+        joined = desk.store.redeem_participant_link(token_sha256(token), _participant_id(desk, cookie), now)
         consented = desk.store.record_consent(joined.id, desk.study.consent.version, now)
         desk.store.add_comparisons(
             Comparison(
@@ -91,6 +93,18 @@ def admit(desk: Desk, cookie: str) -> Participant:
         )
         desk.store.open_session(token_sha256(cookie), desk.stored_study, joined.id, now)
     return consented
+
+
+def _participant_id(desk: Desk, cookie: str) -> str:
+    """The id of who agrees to take part with this cookie."""
+    return f"{desk.stored_study.sha256[:6]}-{token_sha256(cookie)[:10]}"
+
+
+def _withdrawn(desk: Desk, cookie: str) -> Participant | None:
+    """Who agreed with this cookie and was withdrawn: that ends the session, and must not begin another."""
+    own_id = _participant_id(desk, cookie)
+    everyone = desk.store.participants(desk.stored_study, source="human")
+    return next((one for one in everyone if one.id == own_id and one.withdrawn_at is not None), None)
 
 
 def new_researcher_cookie(desk: Desk, token: str) -> str:
