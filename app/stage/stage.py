@@ -31,7 +31,23 @@ def _component(name: str, *styles: str) -> ComponentRenderer:
 
 def watch(data: Data, *, key: str, on_answer: Callback, on_moved: Callback) -> None:
     """The robot page; calls back when the questions are wanted, or when another comparison is open by now."""
-    _component("watch", "watch")(key=key, data=data, on_answer_change=on_answer, on_moved_change=on_moved)
+    _component("watch", "stage", "watch")(
+        key=key, data=data, on_answer_change=on_answer, on_moved_change=on_moved
+    )
+
+
+def guide(data: Data, *, key: str, on_answer: Callback, on_moved: Callback, on_practised: Callback) -> None:
+    """The page where the robot is guided, for a comparison or for practice.
+
+    Calls back when the questions are wanted, when something else is open by now, and when practice is done.
+    """
+    _component("guide", "stage", "guide")(
+        key=key,
+        data=data,
+        on_answer_change=on_answer,
+        on_moved_change=on_moved,
+        on_practised_change=on_practised,
+    )
 
 
 def ask(data: Data, *, key: str, on_back: Callback, on_submitted: Callback) -> None:
@@ -41,9 +57,18 @@ def ask(data: Data, *, key: str, on_back: Callback, on_submitted: Callback) -> N
     )
 
 
+def lab(data: Data, *, key: str, on_turned: Callable[[object], None], on_answer: Callback) -> None:
+    """The page beside a robot in the lab; calls back with the method turned to, or for the questions."""
+
+    def turned() -> None:
+        on_turned(st.session_state[key].get("turned"))
+
+    _component("lab", "lab")(key=key, data=data, on_turned_change=turned, on_answer_change=on_answer)
+
+
 def picture(data: Data) -> None:
     """The picture of the instructions."""
-    _component("picture", "watch", "picture")(key="picture", data=data)
+    _component("picture", "stage", "picture")(key="picture", data=data)
 
 
 def bare_page() -> None:

@@ -3,6 +3,7 @@
 const EYE = [-0.92, -1.42, 0.88];
 const TARGET = [0.62, -0.38, 0.155];
 const HALF_HEIGHT = 0.375; // tangent of half the vertical field of view
+const NARROW = 1.8; // a narrower view is wider open, so that the arm and the wall stay in it
 const NEAR = 0.3;
 const FAR = 8;
 
@@ -17,10 +18,12 @@ const UP = cross(RIGHT, FORWARD);
 
 export const eye = EYE;
 
+const halfHeight = (aspect) => HALF_HEIGHT * Math.max(1, NARROW / aspect);
+
 // Column-major projection of the view, as WebGL takes it; aspect = width / height.
 export function projection(aspect) {
-  const sx = 1 / (HALF_HEIGHT * aspect);
-  const sy = 1 / HALF_HEIGHT;
+  const sx = 1 / (halfHeight(aspect) * aspect);
+  const sy = 1 / halfHeight(aspect);
   const depth = (FAR + NEAR) / (FAR - NEAR);
   const shift = (-2 * FAR * NEAR) / (FAR - NEAR);
   const rows = [
@@ -36,6 +39,6 @@ export function projection(aspect) {
 export function project(point, width, height) {
   const d = minus(point, EYE);
   const distance = dot(d, FORWARD);
-  const scale = height / (2 * HALF_HEIGHT * distance);
+  const scale = height / (2 * halfHeight(width / height) * distance);
   return { x: width / 2 + dot(d, RIGHT) * scale, y: height / 2 - dot(d, UP) * scale, distance, scale };
 }

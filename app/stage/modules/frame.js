@@ -28,6 +28,11 @@ export class Frame {
     return this.height / 2 - (z - this.midZ) * this.scale;
   }
 
+  // The point of the wall that is shown at (x, y).
+  wallAt(x, y) {
+    return { y: this.midY - (x - this.width / 2) / this.scale, z: this.midZ - (y - this.height / 2) / this.scale };
+  }
+
   // The rectangle's centre line on the screen.
   get box() {
     const { left, right, top, bottom } = this.maze;
@@ -37,6 +42,12 @@ export class Frame {
   get ring() {
     return Math.max(13, RING_M * this.scale);
   }
+}
+
+// A canvas that isn't on the page; a worker has no document to make one with.
+export function spareCanvas(width = 1, height = 1) {
+  if (typeof document === 'undefined') return new OffscreenCanvas(width, height);
+  return Object.assign(document.createElement('canvas'), { width, height });
 }
 
 // Sizes a canvas to its place on the page; the returned context draws in CSS pixels. Null while it has no size.

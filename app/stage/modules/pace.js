@@ -1,29 +1,28 @@
-// How often the robot is drawn. The wall comes first: where frames are slow, as without a graphics card, the robot is
-// drawn less often than the wall.
+// How often the robot is drawn: by what drawing it costs, so that it never takes more than its share of the time.
 
-const QUICK_MS = 30;
-const SLOW_MS = 200;
-const SLOW_FRAME_MS = 45;
-const SMOOTHING = 0.2;
+const MOST_OFTEN_MS = 30;
+const SHARE = 0.25;
+const SMOOTHING = 0.3;
 
 export class Pace {
   constructor() {
-    this.frame = 0;
+    this.cost = 0;
     this.restart();
   }
 
-  // The next frame is drawn whatever the pace.
+  // The next picture is due at once, whatever the pace.
   restart() {
-    this.before = null;
-    this.drawn = -Infinity;
+    this.due = -Infinity;
   }
 
-  // now: time of the frame [ms].
-  isDue(now) {
-    if (this.before !== null) this.frame += SMOOTHING * (now - this.before - this.frame);
-    this.before = now;
-    if (now - this.drawn < (this.frame > SLOW_FRAME_MS ? SLOW_MS : QUICK_MS)) return false;
-    this.drawn = now;
-    return true;
+  // Milliseconds from now until the next picture is due.
+  wait(now) {
+    return Math.max(0, this.due - now);
+  }
+
+  // A picture was begun at a time and took so long [ms].
+  drew(begun, took) {
+    this.cost += SMOOTHING * (took - this.cost);
+    this.due = begun + Math.max(MOST_OFTEN_MS, Math.max(took, this.cost) / SHARE);
   }
 }

@@ -1,7 +1,7 @@
 // The blasted path. Every pixel keeps the strongest opacity ever painted on it, so that strokes neither add up
 // nor show beads: a faint line stays faint where it crosses itself.
 
-import { PAINT_M } from './frame.js';
+import { PAINT_M, spareCanvas } from './frame.js';
 import { PAINT } from './palette.js';
 
 const SOLID = 0.97;
@@ -17,7 +17,7 @@ export class Path {
   // limits: { solidUpTo, faintFrom } [m/s].
   constructor(limits) {
     this.limits = limits;
-    this.canvas = document.createElement('canvas');
+    this.canvas = spareCanvas();
     this.points = [];
     this.frame = null;
   }

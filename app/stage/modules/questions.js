@@ -4,7 +4,7 @@ import { mount } from './component.js';
 import { Draft } from './draft.js';
 import { badge, el, icon, say, words } from './elements.js';
 import { radioGroup } from './radio_group.js';
-import { steps } from './watch_layout.js';
+import { steps } from './stage_layout.js';
 
 export default function (component) {
   return mount(component, (root, { data, setTriggerValue }) => new QuestionsPage(root, data, setTriggerValue));

@@ -2,7 +2,6 @@
 
 import { capsules, FLOOR_Z, nozzleTip } from './arm.js';
 import { project } from './camera.js';
-import { fitted } from './frame.js';
 import { PAINT } from './palette.js';
 
 const ROOM = {
@@ -15,10 +14,12 @@ export class RobotSketch {
     Object.assign(this, { canvas, picture, wallX });
   }
 
-  draw(state, path, look, theme) {
-    const view = fitted(this.canvas);
-    if (!view) return;
-    const { context: g, width, height } = view;
+  draw(state, path, look, theme, { width, height, ratio }) {
+    const { canvas } = this;
+    const size = { width: Math.round(width * ratio), height: Math.round(height * ratio) };
+    if (canvas.width !== size.width || canvas.height !== size.height) Object.assign(canvas, size);
+    const g = canvas.getContext('2d');
+    g.setTransform(ratio, 0, 0, ratio, 0, 0);
     const at = (point) => project(point, width, height);
     const room = ROOM[theme];
     this.picture.draw(state, path, look);
@@ -40,6 +41,8 @@ export class RobotSketch {
       line(g, at(nozzleTip(state.q)), spot, 0.008, `rgba(${PAINT.join()},.7)`);
     }
   }
+
+  finish() {}
 
   dispose() {}
 

@@ -23,7 +23,7 @@ export function robotView(canvas, wallX, maze) {
 
 class RobotView {
   constructor(canvas, gl, picture, wallX) {
-    Object.assign(this, { canvas, gl, picture, wallX });
+    Object.assign(this, { canvas, gl, picture, wallX, pixel: new Uint8Array(4) });
     this.#build();
     canvas.addEventListener('webglcontextlost', (event) => {
       event.preventDefault();
@@ -35,13 +35,14 @@ class RobotView {
     });
   }
 
-  // state: a State of the source; path: what is painted; look: how the cursor looks; theme: 'light' or 'dark'.
-  draw(state, path, look, theme) {
+  // state: a State of the source; path: what is painted; look: how the cursor looks; theme: 'light' or 'dark';
+  // size: { width, height [CSS px], ratio } of its place on the page.
+  draw(state, path, look, theme, size) {
     const { canvas, gl } = this;
-    if (this.lost || !canvas.clientWidth) return;
-    const ratio = Math.min(window.devicePixelRatio || 1, MAX_RATIO);
-    const width = Math.round(canvas.clientWidth * ratio);
-    const height = Math.round(canvas.clientHeight * ratio);
+    if (this.lost) return;
+    const ratio = Math.min(size.ratio, MAX_RATIO);
+    const width = Math.round(size.width * ratio);
+    const height = Math.round(size.height * ratio);
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     this.picture.draw(state, path, look);
     const tubes = capsules(state.q);
@@ -53,6 +54,12 @@ class RobotView {
     this.#drawPlanes(tubes, view, room);
     this.#drawTubes(tubes, view, room.dim, 0);
     if (state.spraying) this.#drawSpray(state, view);
+  }
+
+  // Waits until the picture is drawn, so that its cost can be measured: drawing only queues it.
+  finish() {
+    const { gl } = this;
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
   }
 
   dispose() {

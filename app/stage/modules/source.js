@@ -1,7 +1,8 @@
 // Where states come from. Every source has
 //   open(slot, lap) -> Promise        gets ready at the start of a lap
 //   advance(dt) -> Step               lets dt seconds pass
-// with Step = { state, passed: the states since the last step, share 0..1 of the lap, ended: null or an outcome }.
+// with Step = { state, sprayed: points { y, z, speed, lifted } since the last step, share 0..1 of the lap, ended: null or
+// an outcome }.
 // A recorded source plays a lap back; dt is the clock of the page.
 
 import { Lap } from './lap.js';
@@ -28,10 +29,14 @@ export class RecordedSource {
     const { lap } = this;
     this.time = Math.min(lap.duration, this.time + dt);
     const last = Math.min(lap.count - 1, Math.floor(this.time * lap.hz));
-    const passed = [];
-    while (this.row < last) passed.push(lap.at(++this.row / lap.hz));
+    const sprayed = [];
+    while (this.row < last) {
+      const { y, z, speed, spraying } = lap.at(++this.row / lap.hz);
+      const goesOn = this.row + 1 < lap.count && lap.at((this.row + 1) / lap.hz).spraying;
+      if (spraying) sprayed.push({ y, z, speed, lifted: !goesOn });
+    }
     const ended = this.time >= lap.duration ? lap.outcome : null;
-    return { state: lap.at(this.time), passed, share: this.time / lap.duration, ended };
+    return { state: lap.at(this.time), sprayed, share: this.time / lap.duration, ended };
   }
 
   #load(slot, lap) {

@@ -1,7 +1,7 @@
 // The wall as the robot view shows it: lane, path and cursor on a picture of fixed size.
 
 import { drawCursor } from './cursor.js';
-import { Frame } from './frame.js';
+import { Frame, spareCanvas } from './frame.js';
 import { drawStart, drawWall } from './wall.js';
 
 const WIDTH = 512;
@@ -11,12 +11,8 @@ const RING_PX = 10;
 export class WallPicture {
   constructor(maze) {
     this.frame = new Frame(maze, WIDTH, HEIGHT);
-    this.canvas = document.createElement('canvas');
-    this.empty = document.createElement('canvas');
-    for (const canvas of [this.canvas, this.empty]) {
-      canvas.width = WIDTH;
-      canvas.height = HEIGHT;
-    }
+    this.canvas = spareCanvas(WIDTH, HEIGHT);
+    this.empty = spareCanvas(WIDTH, HEIGHT);
     const g = this.empty.getContext('2d');
     drawWall(g, this.frame, { chevrons: false });
     drawStart(g, this.frame);
@@ -30,15 +26,12 @@ export class WallPicture {
     return { left: midY + halfY, right: midY - halfY, top: midZ + halfZ, bottom: midZ - halfZ };
   }
 
+  // path: a Path of its own, painted at this picture's size.
   draw(state, path, look) {
     const g = this.canvas.getContext('2d');
     g.drawImage(this.empty, 0, 0);
-    if (path.frame) {
-      const share = this.frame.scale / path.frame.scale;
-      const w = path.frame.width * share;
-      const h = path.frame.height * share;
-      g.drawImage(path.canvas, (WIDTH - w) / 2, (HEIGHT - h) / 2, w, h);
-    }
+    path.fit(this.frame, 1);
+    g.drawImage(path.canvas, 0, 0);
     drawCursor(g, this.frame.x(state.y), this.frame.y(state.z), { ...look, radius: RING_PX });
   }
 }

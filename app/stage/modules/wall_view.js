@@ -1,7 +1,7 @@
 // The wall on the screen: the empty wall, what is painted on it, the hand and the nozzle's cursor.
 
 import { drawCursor } from './cursor.js';
-import { fitted, Frame } from './frame.js';
+import { fitted, Frame, spareCanvas } from './frame.js';
 import { drawHand } from './hand.js';
 import { drawStart, drawWall } from './wall.js';
 
@@ -11,7 +11,7 @@ export class WallView {
   // texts.start: the label of start and finish.
   constructor(canvas, maze, path, texts) {
     Object.assign(this, { canvas, maze, path, texts });
-    this.empty = document.createElement('canvas');
+    this.empty = spareCanvas();
   }
 
   // state may be null: an empty wall. look: how the cursor looks.

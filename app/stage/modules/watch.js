@@ -2,19 +2,15 @@
 
 import { Announcer } from './announcer.js';
 import { mount } from './component.js';
-import { TiltLook } from './cursor.js';
 import { say, words } from './elements.js';
-import { Gauges } from './gauges.js';
-import { Pace } from './pace.js';
-import { Path } from './path.js';
 import { Player } from './player.js';
 import { radioGroup } from './radio_group.js';
-import { robotView } from './robot_view.js';
+import { Scene } from './scene.js';
 import { RecordedSource } from './source.js';
+import { SLOTS } from './stage_layout.js';
 import { Unlock } from './unlock.js';
-import { WallView } from './wall_view.js';
+import { watchLayout } from './watch_layout.js';
 import { WatchLog } from './watch_log.js';
-import { SLOTS, watchLayout } from './watch_layout.js';
 import { WatchStatus } from './watch_status.js';
 
 const RESET_S = 4;
@@ -36,13 +32,8 @@ class WatchPage {
     this.tell = setTriggerValue;
     this.parts = watchLayout(data);
     root.append(this.parts.page);
-    this.path = new Path(data.path);
-    this.tilt = new TiltLook(data.tilt);
-    this.wall = new WallView(this.parts.canvas, data.maze, this.path, this.texts);
-    this.robot = robotView(this.parts.robot, data.wall_x, data.maze);
-    this.pace = new Pace();
-    this.gauges = new Gauges(data.path, this.texts);
-    this.parts.card.append(this.gauges.element, this.parts.controls);
+    this.scene = new Scene(root, this.parts, data);
+    this.parts.card.append(this.scene.gauges.element, this.parts.controls);
     this.announcer = new Announcer();
     root.append(this.announcer.element);
     this.unlock = new Unlock(data.required_s, this.texts.unlock);
@@ -81,7 +72,7 @@ class WatchPage {
     this.player.pause();
     this.#clearTimers();
     this.announcer.dispose();
-    this.robot.dispose();
+    this.scene.dispose();
     this.resizing.disconnect();
     for (const [target, type, act] of this.listeners) target.removeEventListener(type, act);
   }
@@ -143,8 +134,7 @@ class WatchPage {
     this.#clearTimers();
     this.lap[slot] = lap;
     this.finished = false;
-    this.path.clear();
-    this.gauges.newLap();
+    this.scene.newLap();
     this.#showStuck(null);
     this.#showStatus();
     this.opening = `${slot}${lap}`;
@@ -162,7 +152,6 @@ class WatchPage {
     }
     if (this.opening !== `${slot}${lap}` || this.gone) return;
     say(this.parts.message, play ? '' : this.texts.intro);
-    this.pace.restart();
     this.player.show();
     if (play) this.#play();
   }
@@ -191,35 +180,20 @@ class WatchPage {
 
   #step(step, dt) {
     this.log.pass(dt);
-    for (const state of step.passed) {
-      if (state.spraying) this.path.sprayTo(state.y, state.z, state.speed);
-      else this.path.lift();
-    }
+    this.scene.spray(step.sprayed);
     this.#draw(step);
-    this.status.showTime(this.slot, this.lap[this.slot], step.state.t, step.share);
+    this.status.showLap(this.slot, this.lap[this.slot], step.state.t, step.share);
     this.status.showUnlock(this.log.watched);
     if (step.ended && !this.finished) this.#end(step.ended);
   }
 
   #redraw() {
-    if (!this.shown) return;
-    this.pace.restart();
-    this.#draw(this.shown);
+    if (this.shown) this.#draw(this.shown);
   }
 
   #draw(step) {
     this.shown = step;
-    const { state } = step;
-    const look = {
-      look: this.tilt.at(state.tilt),
-      elongation: state.tilt / this.data.tilt.fullEllipse,
-      direction: state.direction,
-      spraying: state.spraying,
-      idle: !state.moving,
-    };
-    this.wall.draw(state, look);
-    if (this.pace.isDue(performance.now())) this.robot.draw(state, this.path, look, this.root.dataset.theme);
-    const said = this.gauges.draw(state, look);
+    const said = this.scene.draw(step.state);
     if (this.player.playing) {
       this.announcer.say(words(this.texts.twin, { slot: this.slot, lap: this.lap[this.slot], ...said }));
     }
@@ -240,7 +214,7 @@ class WatchPage {
     } else {
       const still = { moving: false, spraying: false, pull: 0, speed: 0 };
       this.shown = { ...this.shown, state: { ...this.shown.state, ...still } };
-      this.gauges.speakNow();
+      this.scene.gauges.speakNow();
       this.#redraw();
       this.#showStuck(outcome, isLast ? all : words(texts.next_lap_in, { lap: lap + 1, slot, seconds: RESET_S }));
     }
@@ -275,7 +249,7 @@ class WatchPage {
   #showStuck(outcome, next) {
     this.resetting = outcome !== null;
     if (this.resetting) this.announcer.interrupt(this.status.showStuck(outcome, next));
-    else this.status.hideStuck();
+    else this.status.hideNotice();
   }
 
   #trouble(what) {

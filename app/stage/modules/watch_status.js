@@ -1,12 +1,14 @@
-// What the robot page says about itself: how much was watched, what plays, what happens next, when the questions open.
+// What the page of watched laps says: how much was watched, what plays, what happens next.
 
 import { icon, say, words } from './elements.js';
-import { SLOTS } from './watch_layout.js';
+import { SLOTS } from './stage_layout.js';
+import { StageStatus } from './stage_status.js';
 
-export class WatchStatus {
-  // parts: the page's elements; unlock: when the questions open; laps: how many there are.
+export class WatchStatus extends StageStatus {
+  // laps: how many there are.
   constructor(parts, texts, unlock, laps) {
-    Object.assign(this, { parts, texts, unlock, laps });
+    super(parts, texts, unlock);
+    this.laps = laps;
   }
 
   // slot and lap shown; seen: { A, B } sets of laps; watched: { A, B } [s].
@@ -28,47 +30,9 @@ export class WatchStatus {
     this.showUnlock(watched);
   }
 
-  showTime(slot, lap, seconds, share) {
-    const { chip, laps } = this.parts;
-    const whole = Math.floor(seconds);
-    say(chip.badge, slot);
-    chip.badge.className = `badge small ${slot.toLowerCase()}`;
-    say(chip.lap, words(this.texts.lap, { lap }));
-    say(chip.time, `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`);
-    laps[lap - 1].style.setProperty('--share', share);
-  }
-
-  showUnlock(watched) {
-    const { parts, unlock } = this;
-    const open = unlock.isOpen(watched);
-    say(parts.unlock, unlock.text(watched));
-    parts.answer.classList.toggle('primary', open);
-    parts.answer.classList.toggle('locked', !open);
-    parts.answer.setAttribute('aria-disabled', String(!open));
-    parts.answerLock.style.display = open ? 'none' : '';
-    for (const slot of SLOTS) {
-      const share = unlock.share(watched, slot);
-      const { dial, check } = parts.status[slot];
-      dial.querySelector('.arc').setAttribute('stroke-dasharray', `${100 * share} 100`);
-      dial.style.display = share >= 1 ? 'none' : '';
-      check.style.display = share >= 1 ? '' : 'none';
-    }
-  }
-
-  // outcome: stuck, or failed (the robot stopped by itself). Returns what it says.
-  showStuck(outcome, next) {
-    const { parts, texts } = this;
-    const title = outcome === 'stuck' ? texts.stuck_title : texts.stopped_title;
-    parts.veil.hidden = false;
-    parts.stuck.hidden = false;
-    say(parts.stuck.querySelector('h2'), title);
-    say(parts.stuck.querySelector('.next'), next);
-    return `${title}. ${texts.stuck_text} ${next}`;
-  }
-
-  hideStuck() {
-    this.parts.veil.hidden = true;
-    this.parts.stuck.hidden = true;
+  showLap(slot, lap, seconds, share) {
+    this.showTime(slot, words(this.texts.lap, { lap }), seconds);
+    this.parts.laps[lap - 1].style.setProperty('--share', share);
   }
 
   #now(playing, resetting) {

@@ -1,0 +1,48 @@
+// Sends what a device says: at once when something changes, and as a heartbeat while nothing does.
+
+const LEAST_GAP_MS = 8;
+const HEARTBEAT_MS = 16;
+
+export class InputPump {
+  // send(now): sends one input.
+  constructor(send) {
+    this.send = send;
+    this.sent = -Infinity;
+    this.pending = 0;
+    this.beating = 0;
+  }
+
+  start() {
+    if (this.beating) return;
+    this.beating = setInterval(() => {
+      if (performance.now() - this.sent >= HEARTBEAT_MS - 3) this.#send();
+    }, HEARTBEAT_MS);
+  }
+
+  stop() {
+    clearInterval(this.beating);
+    clearTimeout(this.pending);
+    this.beating = 0;
+    this.pending = 0;
+  }
+
+  // Something changed. Changes closer together than the least gap go out as one.
+  poke() {
+    if (!this.beating || this.pending) return;
+    const wait = this.sent + LEAST_GAP_MS - performance.now();
+    if (wait <= 0) this.#send();
+    else this.pending = setTimeout(() => this.#send(), wait);
+  }
+
+  // Sends whatever the gap: letting go must not wait.
+  flush() {
+    if (this.beating) this.#send();
+  }
+
+  #send() {
+    clearTimeout(this.pending);
+    this.pending = 0;
+    this.sent = performance.now();
+    this.send(this.sent);
+  }
+}

@@ -1,0 +1,32 @@
+// The time from an input to the first picture that shows it [ms]: measured here, told to the server with later inputs.
+
+const MOST_WAITING = 500;
+
+export class Latency {
+  constructor() {
+    this.sent = [];
+    this.measured = [];
+  }
+
+  // An input went out.
+  began(seq, now) {
+    this.sent.push({ seq, now });
+    if (this.sent.length > MOST_WAITING) this.sent.shift();
+  }
+
+  // A picture of a state is drawn, computed with this input.
+  drew(seq, now) {
+    while (this.sent.length && this.sent[0].seq <= seq) this.measured.push(now - this.sent.shift().now);
+    if (this.measured.length > MOST_WAITING) this.measured.splice(0, this.measured.length - MOST_WAITING);
+  }
+
+  // The oldest measurement not told yet; -1 if there is none.
+  take() {
+    return this.measured.shift() ?? -1;
+  }
+
+  // The robot rests, or is gone: what was sent is not going to be shown soon.
+  forget() {
+    this.sent = [];
+  }
+}
