@@ -8,8 +8,8 @@ import hashlib
 from collections import Counter
 
 from app.participant.progress import SLOTS, Progress
-from app.participant.texts import filled, texts
-from app.participant.watching import was_whole, watched_s
+from app.participant.texts import filled, texts, texts_with_parts
+from app.participant.watching import counting_trials, was_whole, watched_s
 from data.records import Comparison
 from data.store import Store
 from data.study import Question, Study
@@ -37,15 +37,49 @@ def stage_data(study: Study) -> dict[str, object]:
 
 def picture_data(study: Study) -> dict[str, object]:
     """For the picture of the instructions."""
-    return {**stage_data(study), "texts": texts()["instructions"]}
+    words = texts()["picture"]
+    hand = words["your_hand" if study.protocol.trial_source == "guided" else "hand"]
+    return {**stage_data(study), "texts": {**words, "hand": hand}}
+
+
+def guide_data(study: Study, store: Store, progress: Progress, comparison: Comparison) -> dict[str, object]:
+    """For the page of a comparison on which the participant guides the robot."""
+    counting = counting_trials(store, comparison)
+    laps = Counter(trial.slot for trial in counting if trial.outcome == "completed")
+    return {
+        **_place(progress, comparison),
+        **stage_data(study),
+        **_in_hand(progress),
+        "texts": {**texts_with_parts("guide"), **_titled("guide", progress, comparison)},
+        "required_s": study.protocol.minimum_exposure_s,
+        "exposure": watched_s(store, comparison),
+        "laps": {slot: laps[slot] for slot in SLOTS},
+        "practice": False,
+    }
+
+
+def practice_data(study: Study, progress: Progress) -> dict[str, object]:
+    """For the same page before the first comparison, on the rectangle that is practised on."""
+    of = len(progress.comparisons)
+    words = filled(texts()["guide"], done=progress.answered, of=of)
+    return {
+        "comparison": 0,
+        "comparisons": of,
+        **stage_data(study.practice_study),
+        **_in_hand(progress),
+        "texts": {**texts_with_parts("guide"), "title": words["practice_title"], "done": words["done"]},
+        "required_s": 0.0,
+        "exposure": dict.fromkeys(SLOTS, 0.0),
+        "laps": dict.fromkeys(SLOTS, 0),
+        "practice": True,
+    }
 
 
 def watch_data(study: Study, store: Store, progress: Progress, comparison: Comparison) -> dict[str, object]:
-    """For the robot page of a comparison."""
-    trials = store.trials(comparison=comparison.id)
-    runs = Counter(trial.slot for trial in trials)
+    """For the page of a comparison on which the robot is watched."""
+    runs = Counter(trial.slot for trial in store.trials(comparison=comparison.id))
     seen: dict[str, list[int]] = {slot: [] for slot in SLOTS}
-    for trial in trials:
+    for trial in counting_trials(store, comparison):
         lap = int(trial.metrics.get("lap", 0))
         if was_whole(trial) and lap not in seen[trial.slot]:
             seen[trial.slot].append(lap)
@@ -70,10 +104,22 @@ def questions_data(study: Study, progress: Progress, comparison: Comparison) -> 
         **_place(progress, comparison),
         "texts": _titled("questions", progress, comparison),
         "questions": [_question(question) for question in study.questions],
-        # An id begins with the study's hash.
-        "draft_key": hashlib.sha256(comparison.id.encode()).hexdigest()[:16],
+        "draft_key": _draft_key(comparison),
         "answers_address": "/answers",
     }
+
+
+def _draft_key(comparison: Comparison) -> str:
+    """What answers not yet submitted are kept under: an id begins with the study's hash, so none goes out.
+
+    A comparison begun anew has another one: its answers are for what is seen now.
+    """
+    begun = f"{comparison.id} {comparison.restarted_at}" if comparison.restarted_at else comparison.id
+    return hashlib.sha256(begun.encode()).hexdigest()[:16]
+
+
+def _in_hand(progress: Progress) -> dict[str, object]:
+    return {"device": progress.participant.device or "mouse", "live_address": "/live"}
 
 
 def _place(progress: Progress, comparison: Comparison) -> dict[str, object]:

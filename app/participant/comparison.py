@@ -2,11 +2,13 @@
 
 import streamlit as st
 
-from app.participant.blinding import questions_data, watch_data
+from app.participant.blinding import guide_data, questions_data, watch_data
+from app.participant.coming_back import anew_if_back
 from app.participant.progress import Progress
 from app.participant.watching import watched_s
 from app.server.desk import Desk
-from app.stage.stage import ask, watch
+from app.stage.stage import ask, guide, watch
+from data.records import Comparison
 
 _STEP = "step"
 _QUESTIONS = "questions"
@@ -17,8 +19,8 @@ def show(desk: Desk, progress: Progress) -> None:
 
     Which of the two is in the address, so that a reload stays where it was.
     """
-    comparison = progress.comparison
-    assert comparison is not None
+    assert progress.comparison is not None
+    comparison = anew_if_back(desk.study, desk.store, progress.comparison, desk.clock())
     wanted = st.query_params.get(_STEP) == f"{_QUESTIONS}-{comparison.position}"
     if wanted and progress.may_answer(desk.study, watched_s(desk.store, comparison)):
         ask(
@@ -27,13 +29,31 @@ def show(desk: Desk, progress: Progress) -> None:
             on_back=to_robot,
             on_submitted=to_robot,
         )
-        return
-    watch(
-        watch_data(desk.study, desk.store, progress, comparison),
-        key=f"watch-{comparison.position}",
-        on_answer=lambda: to_questions(comparison.position),
-        on_moved=to_robot,
-    )
+    else:
+        _show_robot(desk, progress, comparison)
+
+
+def _show_robot(desk: Desk, progress: Progress, comparison: Comparison) -> None:
+    source = desk.study.protocol.trial_source
+    if source == "external":
+        from app.participant import external
+
+        external.show(desk, progress)
+    elif source == "guided":
+        guide(
+            guide_data(desk.study, desk.store, progress, comparison),
+            key=f"guide-{comparison.position}",
+            on_answer=lambda: to_questions(comparison.position),
+            on_moved=to_robot,
+            on_practised=to_robot,
+        )
+    else:
+        watch(
+            watch_data(desk.study, desk.store, progress, comparison),
+            key=f"watch-{comparison.position}",
+            on_answer=lambda: to_questions(comparison.position),
+            on_moved=to_robot,
+        )
 
 
 def to_questions(position: int) -> None:

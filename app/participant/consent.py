@@ -2,8 +2,8 @@
 
 import streamlit as st
 
+from app.participant.text_page import head, lead_on
 from app.participant.texts import texts
-from app.participant.trouble import attempt
 from app.server.desk import Desk
 from app.server.visitors import Visitor, admit
 
@@ -11,7 +11,7 @@ from app.server.visitors import Visitor, admit
 def show(desk: Desk, here: Visitor) -> None:
     """The study's own consent text, and one button."""
     words = texts()["consent"]
-    st.title(words["title"], anchor=False)
+    head(words["title"])
     st.markdown(desk.study.consent.text)
-    st.button(words["agree"], type="primary", on_click=attempt, args=(lambda: admit(desk, here.cookie),))
+    lead_on(words["agree"], lambda: admit(desk, here.cookie))
     st.caption(words["decline"])

@@ -1,47 +1,66 @@
-"""What there will be to see, with a picture; and the short page between two comparisons."""
+"""What there will be to do or to see, with a picture; for those who guide, then what they guide with."""
 
 import streamlit as st
 
+from app.participant import device
 from app.participant.blinding import picture_data
+from app.participant.coming_back import note_begun
 from app.participant.progress import Progress
+from app.participant.text_page import head, lead_on
 from app.participant.texts import filled, texts
-from app.participant.trouble import attempt
 from app.server.desk import Desk
 from app.stage.stage import picture
 
+_STEP = "step"
+_DEVICE = "device"
+
 
 def show(desk: Desk, progress: Progress) -> None:
-    """The instructions, before the first comparison."""
-    of = len(progress.comparisons)
-    words = filled(texts()["instructions"], comparisons=of, questions=len(desk.study.questions))
-    st.title(words["title"], anchor=False)
-    st.markdown(words["watch"])
-    picture(picture_data(desk.study))
-    st.markdown(words["look"])
-    st.markdown(words["stuck"] + " " + words["comparisons_one" if of == 1 else "comparisons"])
-    _lead_on(desk, progress, words["next"])
+    """The instructions, before anything moves; which of their two screens is in the address."""
+    is_guided = desk.study.protocol.trial_source == "guided"
+    if is_guided and st.query_params.get(_STEP) == _DEVICE:
+        device.show(desk, progress)
+        return
+    source = desk.study.protocol.trial_source
+    words = filled(texts()[f"instructions.{source}"], questions=questions_in_words(len(desk.study.questions)))
+    head(words["title"], progress)
+    st.markdown(words["before"])
+    if source != "external":
+        picture(picture_data(desk.study))
+    if is_guided:
+        st.markdown(words["after"])
+        lead_on(texts()["instructions"]["next"], _to_device)
+        return
+    st.markdown(words["after"] + " " + comparisons_in_words(len(progress.comparisons)))
+    lead_on_to_next(desk, progress, texts()["instructions"]["next"])
 
 
-def show_between(desk: Desk, progress: Progress) -> None:
-    """A rest after a comparison: the answers are stored, the next A and B are new."""
-    done, of = progress.answered, len(progress.comparisons)
-    words = filled(texts()["between"], done=done, of=of, next=done + 1)
-    st.title(words["title"], anchor=False)
-    st.markdown(words["text"])
-    st.subheader(words["next_title"], anchor=False)
-    st.markdown(words["next_text"])
-    _lead_on(desk, progress, words["next"])
-
-
-def _lead_on(desk: Desk, progress: Progress, label: str) -> None:
-    """The button that starts the next comparison; its laps are run while the participant reads."""
+def lead_on_to_next(desk: Desk, progress: Progress, label: str) -> None:
+    """The button that starts the next comparison; laps to watch are run while the participant reads."""
     coming = progress.next
     if coming is None:
         return
 
     def begin() -> None:
-        desk.store.start_comparison(coming.id, desk.clock())
+        note_begun(desk.store.start_comparison(coming.id, desk.clock()))
+        st.query_params.clear()
 
-    # A callback: a click is not lost if the script is interrupted on its way to the button.
-    st.button(label, type="primary", on_click=attempt, args=(begin,))
-    desk.laps.prepare(progress.lap_keys(desk.study, coming))
+    lead_on(label, begin)
+    if desk.study.protocol.trial_source == "observed":
+        desk.laps.prepare(progress.lap_keys(desk.study, coming))
+
+
+def questions_in_words(count: int) -> str:
+    """How many questions follow each comparison, to be put into a sentence."""
+    words = texts()["instructions.questions"]
+    return words["one"] if count == 1 else filled(words, questions=count)["more"]
+
+
+def comparisons_in_words(count: int) -> str:
+    """How many comparisons there are, as a sentence."""
+    words = texts()["instructions"]
+    return words["comparisons_one"] if count == 1 else filled(words, comparisons=count)["comparisons"]
+
+
+def _to_device() -> None:
+    st.query_params[_STEP] = _DEVICE

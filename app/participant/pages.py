@@ -2,13 +2,14 @@
 
 import streamlit as st
 
-from app.participant import comparison, consent, instructions, thanks
+from app.participant import background, between, closed, comparison, consent, instructions, practice, thanks
 from app.participant.progress import progress_of
+from app.participant.text_page import head
 from app.participant.texts import texts
 from app.participant.trouble import show_or_say_trouble
 from app.server.desk import desk
 from app.server.visitors import visitor
-from app.stage.stage import bare_page, text_page
+from app.stage.stage import bare_page
 
 
 def show_study() -> None:
@@ -22,23 +23,33 @@ def _show_page() -> None:
     words = texts()["page"]
     here = visitor(desk(), st.context.cookies)
     if here is None:
-        text_page()
-        st.title(words["no_link_title"], anchor=False)
+        head(words["no_link_title"])
         st.markdown(words["no_link"])
         return
     if here.participant is None:
-        text_page()
         consent.show(desk(), here)
         return
     progress = progress_of(desk().store, here.participant)
-    if progress.place == "comparison":
-        bare_page()
-        comparison.show(desk(), progress)
-        return
-    text_page()
-    if progress.place == "instructions":
-        instructions.show(desk(), progress)
-    elif progress.place == "between":
-        instructions.show_between(desk(), progress)
-    else:
-        thanks.show(progress.participant)
+    match progress.place_in(desk().study, desk().clock()):
+        case "withdrawn":
+            closed.show_withdrawn()
+        case "closed":
+            closed.show_closed()
+        case "background":
+            background.show(desk(), progress)
+        case "instructions":
+            instructions.show(desk(), progress)
+        case "practice":
+            bare_page()
+            practice.show(desk(), progress)
+        case "ready":
+            between.show_ready(desk(), progress)
+        case "comparison":
+            bare_page()
+            comparison.show(desk(), progress)
+        case "between":
+            between.show_between(desk(), progress)
+        case "break":
+            between.show_break(desk(), progress)
+        case "thanks":
+            thanks.show(desk(), progress)

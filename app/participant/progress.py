@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from datetime import datetime, timedelta
 from typing import Literal
 
 from app.server.laps import LapKey, comparison_seed
@@ -9,7 +10,18 @@ from data.records import Comparison, Participant, Slot
 from data.store import Store
 from data.study import Study
 
-Place = Literal["instructions", "comparison", "between", "thanks"]
+Place = Literal[
+    "withdrawn",
+    "closed",
+    "background",
+    "instructions",
+    "practice",
+    "ready",
+    "comparison",
+    "between",
+    "break",
+    "thanks",
+]
 SLOTS: tuple[Slot, Slot] = ("A", "B")
 EXPOSURE_TOLERANCE_S = 0.05
 """What rounding of the stretches watched may take away."""
@@ -51,17 +63,35 @@ class Progress:
         """Whether one comparison alone is not answered."""
         return self.answered == len(self.comparisons) - 1
 
-    @property
-    def place(self) -> Place:
-        """The page to show."""
+    def place_in(self, study: Study, now: datetime) -> Place:
+        """The page to show.
+
+        Who has answered everything keeps the last page for good; for everybody else the study may be over.
+        """
+        if self.participant.withdrawn_at is not None:
+            return "withdrawn"
+        if self.comparison is None and self.next is None:
+            return "thanks"
+        if not may_still_take_part(study, self.participant, now):
+            return "closed"
         if self.comparison is not None:
             return "comparison"
-        if self.next is None:
-            return "thanks"
-        return "between" if self.answered else "instructions"
+        if self.answered:
+            every = study.protocol.break_every
+            return "break" if every and self.answered % every == 0 else "between"
+        return self._place_before_the_first(study)
+
+    def _place_before_the_first(self, study: Study) -> Place:
+        if study.background and self.participant.background_at is None:
+            return "background"
+        if study.protocol.trial_source != "guided" or self.participant.device is None:
+            return "instructions"
+        if study.has_practice and self.participant.practised_at is None:
+            return "practice"
+        return "ready"
 
     def may_answer(self, study: Study, watched: Mapping[Slot, float]) -> bool:
-        """Whether A and B were watched for the least time."""
+        """Whether A and B were met for the least time."""
         least = study.protocol.minimum_exposure_s - EXPOSURE_TOLERANCE_S
         return all(watched[slot] >= least for slot in SLOTS)
 
@@ -86,3 +116,14 @@ class Progress:
 def progress_of(store: Store, participant: Participant) -> Progress:
     """A participant's progress as stored."""
     return Progress(participant, store.comparisons(participant=participant.id))
+
+
+def may_still_take_part(study: Study, participant: Participant, now: datetime) -> bool:
+    """Whether anything more of a participant may be stored: not withdrawn, and within the study's hours.
+
+    The hours count from joining (`Protocol.returning_within_h`), also for who is in the middle of something.
+    """
+    if participant.withdrawn_at is not None:
+        return False
+    hours = study.protocol.returning_within_h
+    return hours == 0 or now - participant.joined_at < timedelta(hours=hours)

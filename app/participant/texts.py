@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 
 Words = dict[str, str]
+Parts = dict[str, str | Words]
 
 
 @cache
@@ -18,6 +19,15 @@ def texts() -> dict[str, Words]:
             if isinstance(nested, dict):
                 pages[f"{page}.{name}"] = nested
     return pages
+
+
+def texts_with_parts(page: str) -> Parts:
+    """The texts of a page together with its nested tables by their names, ``unlock`` for ``guide.unlock``."""
+    parts: Parts = {**texts()[page]}
+    for name, words in texts().items():
+        if name.startswith(f"{page}."):
+            parts[name.removeprefix(f"{page}.")] = words
+    return parts
 
 
 def filled(words: Words, **values: object) -> Words:

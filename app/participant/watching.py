@@ -81,11 +81,17 @@ class WatchReport:
 
 
 def watched_s(store: Store, comparison: Comparison) -> dict[Slot, float]:
-    """How long each slot of a comparison was watched [s]."""
+    """Exposure to each slot of a comparison [s], since it was begun or begun anew."""
     watched: dict[Slot, float] = dict.fromkeys(SLOTS, 0.0)
-    for trial in store.trials(comparison=comparison.id):
+    for trial in counting_trials(store, comparison):
         watched[trial.slot] += trial.duration_s
     return watched
+
+
+def counting_trials(store: Store, comparison: Comparison) -> tuple[Trial, ...]:
+    """The trials of a comparison since it was begun, or begun anew."""
+    trials, anew = store.trials(comparison=comparison.id), comparison.restarted_at
+    return tuple(trial for trial in trials if anew is None or trial.started_at >= anew)
 
 
 def was_whole(trial: Trial) -> bool:
