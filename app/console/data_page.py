@@ -1,4 +1,4 @@
-"""Data: the export as one file, and the audit log."""
+"""Data: tables to browse, the export as one file, and the audit log."""
 
 import io
 import tempfile
@@ -7,8 +7,9 @@ from pathlib import Path
 
 import streamlit as st
 
+from app.console.browsing import browse
 from app.console.evidence import includes_simulated, simulated_switch
-from app.console.style import card, headline, table
+from app.console.style import card, heading, headline, table
 from app.server.desk import Desk
 from data.errors import ElbowroomError
 from data.export import export_study
@@ -17,14 +18,17 @@ _LOG_ROWS = 50
 
 
 def show(desk: Desk) -> None:
-    """Export and audit log."""
+    """Tables, export and audit log."""
     headline("Data")
     simulated_switch(desk)
+    with card("browse"):
+        heading("Browse")
+        browse(desk)
     with card("export"):
-        st.subheader("Export", anchor=False)
+        heading("Export")
         _export(desk)
     with card("audit"):
-        st.subheader("Audit log", anchor=False)
+        heading("Audit log")
         st.caption(desk.store.verify_audit().sentence)
         entries = desk.store.audit_log()[: -_LOG_ROWS - 1 : -1]
         table(

@@ -32,9 +32,13 @@ def includes_simulated() -> bool:
 def simulated_switch(desk: Desk) -> None:
     """A switch for simulated participants, where there are any; it holds for all pages."""
     if desk.store.participants(desk.stored_study, source="simulated"):
-        # Streamlit forgets a widget's state on a page without it, so the choice is kept beside it.
-        st.session_state.setdefault(_SWITCH, includes_simulated())
-        st.session_state[_SIMULATED] = st.toggle("Include simulated participants", key=_SWITCH)
+        # Streamlit forgets a widget's state on another page, so the choice is kept beside it.
+        st.session_state[_SWITCH] = includes_simulated()
+        st.toggle("Include simulated participants", key=_SWITCH, on_change=_take_choice)
+
+
+def _take_choice() -> None:
+    st.session_state[_SIMULATED] = st.session_state[_SWITCH]
 
 
 def evidence(desk: Desk) -> Evidence:

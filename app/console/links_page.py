@@ -1,10 +1,11 @@
 """Links: making them for participants, and refusing them again."""
 
+from datetime import timedelta
 from urllib.parse import urlsplit
 
 import streamlit as st
 
-from app.console.style import card, headline, table
+from app.console.style import card, heading, headline, table
 from app.server.desk import Desk
 from app.server.visitors import new_token
 from data.store import Link, token_sha256
@@ -17,37 +18,44 @@ def show(desk: Desk) -> None:
     """New links at the top; they are shown once, since only their hashes are kept."""
     headline("Links")
     with card("new"):
-        st.subheader("New links", anchor=False)
+        heading("New links")
         kind = st.radio("For whom", list(_KINDS), horizontal=True)
-        label, number = st.columns([0.7, 0.3])
+        label, number, end = st.columns([0.5, 0.2, 0.3])
         name = label.text_input("Label, for you alone", max_chars=80)
         many = number.number_input("How many", 1, 100, 1)
+        days = end.number_input("Valid for days, 0 without end", 0, 3650, 0)
         if st.button("Make links", type="primary"):
             tokens = [new_token() for _ in range(int(many))]
+            now = desk.clock()
+            expires = now + timedelta(days=int(days)) if days else None
             for token in tokens:
                 desk.store.create_link(
                     "personal" if _KINDS[kind] == "personal" else "participant",
                     desk.stored_study,
                     token_sha256(token),
+                    at=now,
+                    expires_at=expires,
                     label=name.strip(),
                 )
-            desk.store.log("researcher", "make links", {"kind": _KINDS[kind], "links": str(len(tokens))})
+            detail = {"kind": _KINDS[kind], "links": str(len(tokens)), "days": str(days or "without end")}
+            desk.store.log("researcher", "make links", detail, now)
             st.caption("Copy them now: they can't be shown again.")
             st.code("\n".join(f"{_base()}/join/{token}" for token in tokens), language=None)
     with card("given-out"):
-        st.subheader("Links given out", anchor=False)
+        heading("Links given out")
         _given_out(desk)
 
 
 def _given_out(desk: Desk) -> None:
     links = desk.store.links(desk.stored_study)
     table(
-        ("Label", "For", "Made", "First followed", "State"),
+        ("Label", "For", "Made", "Valid until", "First followed", "State"),
         [
             (
                 link.label or "without label",
                 _KIND_NAMES[link.kind],
                 f"{link.created_at:%Y-%m-%d %H:%M}",
+                f"{link.expires_at:%Y-%m-%d %H:%M}" if link.expires_at else "without end",
                 f"{link.used_at:%Y-%m-%d %H:%M}" if link.used_at else "not yet",
                 _state(desk, link),
             )
@@ -71,7 +79,7 @@ def _given_out(desk: Desk) -> None:
 
 def _state(desk: Desk, link: Link) -> str:
     if link.expires_at is not None and desk.clock() >= link.expires_at:
-        return "refused"
+        return "over"
     return "used up" if link.kind == "researcher" and link.used_at else "valid"
 
 

@@ -1,44 +1,42 @@
-"""Overview: how far the study has come, how the modes stand under their labels, who is where."""
-
-from collections import Counter
+"""Overview: how far the study has come, how the modes stand under their labels, how good the data are."""
 
 import streamlit as st
 
 from app.console.charts import stuck_chart, worth_chart
 from app.console.evidence import Evidence, evidence, includes_simulated, simulated_switch
-from app.console.style import card, headline, key_figures, table
+from app.console.labels import shown_labels
+from app.console.people import Seat, seats
+from app.console.quality import quality
+from app.console.sessions_page import sessions_table
+from app.console.style import Mark, card, heading, headline, key_figures, table
+from app.console.trial_rows import trial_rows
 from app.console.unblinding import unblind_button
-from app.participant.progress import Progress
 from app.server.desk import Desk
-from data.records import Comparison
+from data.errors import InputError
+from data.study import Study
 
 _REFRESH_S = 10
 _COLUMNS = 3
-_PLACES = {
-    "instructions": "reading",
-    "comparison": "watching and answering",
-    "between": "between comparisons",
-    "thanks": "finished",
-}
 
 
 def show(desk: Desk) -> None:
     """The page; its figures are read anew every few seconds."""
     stored = desk.stored_study
-    lock = "locked: people have taken part" if _is_locked(desk) else "not locked: nobody has taken part"
-    headline(desk.study.title, (f"{stored.label}", f"{lock}", stored.sha256[:8]))
+    lock = Mark("good", "locked") if is_locked(desk) else Mark("off", "not locked: nobody has taken part")
+    headline(desk.study.title, (stored.label, lock, stored.sha256[:8]))
     unblind_button(desk)
     simulated_switch(desk)
     _figures(desk)
 
 
-def _is_locked(desk: Desk) -> bool:
+def is_locked(desk: Desk) -> bool:
+    """Whether the revision that is served is final."""
     return any(study.id == desk.stored_study.id and study.locked for study in desk.store.studies())
 
 
 @st.fragment(run_every=_REFRESH_S)
 def _figures(desk: Desk) -> None:
-    found = evidence(desk)
+    found, seated, now = evidence(desk), seats(desk), desk.clock()
     counts, planned = found.counts, desk.study.protocol.planned_participants
     per_person = (
         len(desk.study.pairs) * desk.study.protocol.repetitions + desk.study.protocol.attention_checks
@@ -46,10 +44,10 @@ def _figures(desk: Desk) -> None:
     key_figures(
         (
             (str(counts.finished), f"of {planned}", "participants finished"),
-            (str(counts.consented - counts.finished), "", "started and not finished"),
+            (str(sum(seat.is_present(now) for seat in seated)), "", "in a session now"),
             (str(counts.answered), f"of {planned * per_person}", "comparisons answered"),
-            (str(counts.trials), "", "laps watched or begun"),
-            (str(counts.stuck), "", "of them ended stuck"),
+            (str(counts.trials), "", "trials"),
+            (str(counts.stuck), f"of {counts.trials}", "ended stuck"),
         )
     )
     wide, narrow = st.columns([0.69, 0.31], gap="small")
@@ -57,13 +55,16 @@ def _figures(desk: Desk) -> None:
         _ranking(found)
     with card("stuck", narrow):
         _stuck(found)
+    with card("quality", narrow):
+        _quality(desk)
     with card("participants"):
-        st.subheader("Participants", anchor=False)
-        _participants(desk)
+        heading("In a session now", f"updates every {_REFRESH_S} s")
+        _sessions(desk, seated)
+    st.caption(planning_sentence(desk.study, desk.stored_study.name))
 
 
 def _ranking(found: Evidence) -> None:
-    st.subheader("How the modes rank", anchor=False)
+    heading("How the modes rank")
     if not found.questions:
         st.caption(found.why_none)
         return
@@ -84,37 +85,45 @@ def _ranking(found: Evidence) -> None:
 
 
 def _stuck(found: Evidence) -> None:
-    st.subheader("Robot stuck, per comparison", anchor=False)
+    heading("Robot stuck, per comparison")
     if not found.stuck:
-        st.caption("No laps were watched yet.")
+        st.caption("No trials are stored yet.")
         return
     st.altair_chart(stuck_chart(found.stuck), width="stretch")
     st.caption("Share of comparisons with the mode in which the robot got stuck under it, 94 % interval.")
 
 
-def _participants(desk: Desk) -> None:
-    people = desk.store.participants(desk.stored_study, source="human")
-    if not people:
+def _sessions(desk: Desk, seated: tuple[Seat, ...]) -> None:
+    now = desk.clock()
+    present = [seat for seat in seated if seat.is_present(now)]
+    if present:
+        sessions_table(present, now)
+    elif seated:
+        st.caption("Nobody at the moment.")
+    else:
         st.caption("Nobody has joined yet. Links are on the page Links.")
+
+
+def _quality(desk: Desk) -> None:
+    heading("Data quality")
+    try:
+        answers = desk.store.responses_table(desk.stored_study, includes_simulated()).rows
+    except InputError:
+        answers = None
+    trials = [row.trial for row in trial_rows(desk)]
+    lines = quality(answers, trials, shown_labels(desk))
+    if not lines:
+        st.caption("There is nothing to judge yet.")
         return
-    planned: dict[str, list[Comparison]] = {}
-    for comparison in desk.store.comparisons(desk.stored_study):
-        planned.setdefault(comparison.participant, []).append(comparison)
-    stuck = Counter(
-        trial.comparison.rpartition(".")[0]
-        for trial in desk.store.trials(desk.stored_study)
-        if trial.outcome == "stuck"
+    table(("What", "So far"), [(line.what, line.mark) for line in lines])
+
+
+def planning_sentence(study: Study, name: str) -> str:
+    """Where to learn what the planned number of people is worth: simulating it takes minutes."""
+    planned = study.protocol.planned_participants
+    people = "1 participant is" if planned == 1 else f"{planned} participants are"
+    sizes = ",".join(str(size) for size in sorted({planned, 2 * planned, 4 * planned}))
+    return (
+        f"{people} planned. How often such a study finds the best mode is simulated in some minutes by "
+        f"`elbowroom power --study {name} --participants {sizes} --out power`"
     )
-    rows = []
-    for person in people:
-        progress = Progress(person, tuple(planned.get(person.id, ())))
-        rows.append(
-            (
-                f"P{person.number}",
-                _PLACES[progress.place],
-                f"{progress.answered} of {len(progress.comparisons)}",
-                str(stuck[person.id]),
-                person.joined_at.strftime("%Y-%m-%d %H:%M UTC"),
-            )
-        )
-    table(("Participant", "Where", "Answered", "Stuck", "Joined"), rows, numbers=(2, 3))

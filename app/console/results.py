@@ -1,10 +1,11 @@
-"""Results: the quick estimate as numbers, a table behind every chart."""
+"""Results: the quick estimate as numbers, a table behind every chart; the full fit on request."""
 
 import streamlit as st
 
 from app.console.charts import percent, worth_chart
 from app.console.evidence import evidence, simulated_switch
-from app.console.style import card, headline, table
+from app.console.fit_card import fit_card
+from app.console.style import card, heading, headline, table
 from app.server.desk import Desk
 
 
@@ -12,17 +13,19 @@ def show(desk: Desk) -> None:
     """Each question with its chart and its table."""
     headline("Results")
     simulated_switch(desk)
+    found = evidence(desk)
+    if found.questions:
+        fit_card(desk)
     st.caption(
         "A quick estimate while the study runs: the highest point of the pooled model and its curvature "
         "there. Participants' differences are left out, so intervals are too narrow. "
-        "`elbowroom report` fits the full model, checks it and says when it must not rank."
+        "The full fit has them, is checked, and says when it must not rank."
     )
-    found = evidence(desk)
     if not found.questions:
         st.markdown(found.why_none)
     for question in found.questions:
         with card(question.name):
-            st.subheader(f"{question.name}: {question.wording}", anchor=False)
+            heading(f"{question.name}: {question.wording}")
             st.caption(f"{question.responses} answers")
             if not question.standings:
                 st.markdown(question.reason)
@@ -40,7 +43,7 @@ def show(desk: Desk) -> None:
                 )
     if found.stuck:
         with card("stuck"):
-            st.subheader("Robot stuck, per comparison", anchor=False)
+            heading("Robot stuck, per comparison")
             table(
                 ("Mode", "Comparisons", "Stuck", "Rate", "94 % interval"),
                 [
