@@ -11,18 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from app.studies import OpenedStudy
+from app.studies import OpenedStudy, check_can_be_simulated
 from data.answers import Answer
-from data.errors import InputError
 from data.records import Comparison, Participant, Slot, Switch, Trial
 from data.schedule import PlannedComparison, plan_session
 from data.store import Store, StoredStudy
 from data.study import Study
 from sim_trials.batch import map_jobs
-from sim_trials.metrics import metric_names
 from sim_trials.operators import draw_operator
-from sim_trials.raters import answer, check_rehearsal, draw_rater, experience
-from sim_trials.start import start_angles
+from sim_trials.raters import answer, draw_rater, experience
 from sim_trials.trial import run_trial
 
 Progress = Callable[[int, int, str], None]
@@ -110,12 +107,13 @@ def simulate_cohort(
     Raises
     ------
     InputError
-        If the study cannot be simulated (`check_can_be_simulated`).
+        If the study cannot be simulated (`app.studies.check_can_be_simulated`).
     """
     study = opened.study
     check_can_be_simulated(study, study.name)
     stored = store.add_study(study, opened.text)
-    known = {p.id for p in store.participants(stored) if p.finished_at is not None}
+    people = store.participants(stored)
+    known = {p.id for p in people if p.finished_at is not None or p.withdrawn_at is not None}
     numbers = [n for n in range(1, participants + 1) if participant_id(study, seed, n) not in known]
     errands = [
         _Errand(study, participant_id(study, seed, n), n, seed, planned, store.recordings_folder)
@@ -142,27 +140,6 @@ def simulate_cohort(
         _drop_recordings(store, stored, unkept)
         raise
     return Cohort(participants, participants - len(numbers), len(errands), trials, stuck)
-
-
-def check_can_be_simulated(study: Study, where: str) -> None:
-    """Find out before anything is written whether simulated people can do a study.
-
-    Parameters
-    ----------
-    study : Study
-    where : str
-        What the error calls the study, e.g. its file.
-
-    Raises
-    ------
-    InputError
-        If a question weighs a trial metric that does not exist, or the robot does not reach the maze.
-    """
-    try:
-        check_rehearsal(study, metric_names())
-        start_angles(study.maze)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
 
 
 def participant_id(study: Study, seed: int, number: int) -> str:

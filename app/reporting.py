@@ -1,20 +1,22 @@
 """From responses, stored or collected, to a fitted and written report."""
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from rich.console import Console
 
 from analysis.console_ranking import print_ranking
 from analysis.fit import fit
+from analysis.lag import LagExclusion, LagLimits, lag_changes, without_laggy
 from analysis.report import MARKER, ReportResult, write_report
-from analysis.results import Engine, FitSettings, Link
+from analysis.results import Engine, Fit, FitSettings, Link
 from app.cli.progress import progress
 from app.studies import open_study
+from data.errors import InputError
 from data.locations import check_folder, default_store
 from data.response_csv import read_response_csv
-from data.responses import ResponseTable, StuckTable
+from data.responses import LagTable, ResponseTable, StuckTable
 from data.store import Store
 from data.study import Study
 
@@ -34,6 +36,7 @@ class Request:
     prior_sd: float = 1.0
     link: Link = "cumulative"
     seed: int = 2017
+    lag_limits: LagLimits = field(default_factory=LagLimits)
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,8 @@ class _Evidence:
     table: ResponseTable
     stuck: StuckTable | None
     study: Study | None
+    lag: LagTable | None = None
+    excluded: LagExclusion | None = None
 
 
 def make_report(request: Request) -> ReportResult:
@@ -56,7 +61,8 @@ def make_report(request: Request) -> ReportResult:
     ElbowroomError
         A folder that cannot be written, exit 1.
     """
-    evidence = _read(request)
+    everything = _read(request)
+    evidence = _without_laggy(everything, request.lag_limits)
     settings = FitSettings(
         engine=request.engine,
         pooled=request.pooled,
@@ -68,18 +74,54 @@ def make_report(request: Request) -> ReportResult:
     check_folder(request.out, MARKER)
     with progress("Bradley-Terry model") as report:
         fitted = fit(evidence.table, settings, progress=report)
+    excluded = evidence.excluded
+    if excluded is not None:
+        excluded = replace(excluded, changes=lag_changes(_fit_of_all(everything, excluded, fitted), fitted))
     with progress("Report") as report:
         written = write_report(
-            evidence.table, fitted, request.out, stuck=evidence.stuck, study=evidence.study, progress=report
+            evidence.table,
+            fitted,
+            request.out,
+            stuck=evidence.stuck,
+            study=evidence.study,
+            progress=report,
+            lag=evidence.lag,
+            excluded=excluded,
         )
     for warning in fitted.warnings:
         print(f"note: {warning}", file=sys.stderr)
+    if excluded is not None:
+        left, total = len(excluded.comparisons), excluded.total
+        print(f"note: {left} of {total} comparisons are left out because of lag", file=sys.stderr)
     print_ranking(fitted, Console(), is_simulated=evidence.table.is_simulated)
     return written
 
 
+def _fit_of_all(everything: _Evidence, excluded: LagExclusion, fitted: Fit) -> Fit:
+    """The fit with the laggy comparisons, by the same engine."""
+    if not excluded.comparisons:
+        return fitted
+    with progress("The same with the laggy comparisons") as report:
+        return fit(everything.table, fitted.settings, progress=report)
+
+
+def _without_laggy(everything: _Evidence, limits: LagLimits) -> _Evidence:
+    if not limits.is_set:
+        return everything
+    if everything.lag is None:
+        raise InputError(
+            "--max-latency-ms and --max-skipped are about trials that people guided, and none is known here"
+        )
+    kept = without_laggy(everything.table, everything.stuck, everything.lag, limits)
+    return replace(everything, table=kept.table, stuck=kept.stuck, excluded=kept.excluded)
+
+
 def _read(request: Request) -> _Evidence:
     if request.responses is not None:
+        if request.lag_limits.is_set:
+            raise InputError(
+                "--max-latency-ms and --max-skipped need a store: a CSV of responses knows no input delay"
+            )
         study = open_study(request.study).study if request.study else None
         return _Evidence(read_response_csv(request.responses, study), None, study)
     with Store.open(request.store or default_store(), create=False) as store:
@@ -88,4 +130,5 @@ def _read(request: Request) -> _Evidence:
             store.responses_table(stored, include_simulated=request.include_simulated),
             store.stuck_table(stored, include_simulated=request.include_simulated),
             stored.study,
+            store.lag_table(stored, include_simulated=request.include_simulated),
         )

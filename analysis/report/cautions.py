@@ -1,10 +1,13 @@
 """What a reader must know before quoting the report: the list "Before you quote this"."""
 
 from collections.abc import Sequence
+from math import isnan
 
 import numpy as np
 
+from analysis.data_quality import DataQuality
 from analysis.figures.labels import isolated, one_line, percent
+from analysis.lag import LagExclusion, ModeDelay
 from analysis.report.findings import Finding, listed
 from analysis.results import Fit, QuestionFit
 from data.responses import ResponseTable
@@ -15,19 +18,44 @@ FEW_PARTICIPANTS = 20
 people find the true first place surely in fewer than half of all cases."""
 _DIVIDED = 0.3
 _MOST_OF_A_KIND = 3
+UNEQUAL_MS = 10.0
+"""Difference between two modes' median input delay that the report warns of [ms]. Untuned."""
+UNEQUAL_SKIPPED_PERCENT = 1.0
+"""The same for the share of skipped ticks. Untuned."""
+
+_TRIALS = {
+    "observed": "Participants watched a simulated robot. A real arm in the hand may be judged differently.",
+    "guided": (
+        "Participants guided a simulated robot in the browser: they saw how it moved, but felt no force. A "
+        "real arm in the hand may be judged differently."
+    ),
+    "external": (
+        "Participants used a robot in the lab. An operator loaded each method and confirmed it: that it was "
+        "the one that the schedule asked for is not measured."
+    ),
+}
+"""What each source of trials leaves open."""
 
 
 def cautions(
-    table: ResponseTable, fit: Fit, found: Sequence[Finding], study: Study | None, checks: int
+    table: ResponseTable,
+    fit: Fit,
+    found: Sequence[Finding],
+    study: Study | None,
+    checks: int,
+    quality: DataQuality | None = None,
 ) -> tuple[str, ...]:
     """Plain sentences, the gravest first."""
+    quality = quality or DataQuality()
     said = [
         *_about_the_source(table, study),
+        *unequal_delays(quality.delays),
         *_about_the_number(fit),
         *_about_the_questions(fit),
         *fit.warnings,
         *_about_people(found),
         *_about_sides(fit),
+        *_about_what_is_left_out(quality.excluded),
         *_about_checks(checks),
         *_about_convergence(fit),
     ]
@@ -47,9 +75,7 @@ def _about_the_source(table: ResponseTable, study: Study | None) -> list[str]:
             "All answers were made by simulated participants. They show what the method does, not what "
             "people prefer."
         ]
-    if study is not None and study.protocol.trial_source == "observed":
-        return ["Participants watched a simulated robot. A real arm in the hand may be judged differently."]
-    return []
+    return [_TRIALS[study.protocol.trial_source]] if study is not None else []
 
 
 def _about_the_number(fit: Fit) -> list[str]:
@@ -124,6 +150,35 @@ def _about_sides(fit: Fit) -> list[str]:
     names = listed([isolated(q.question.name) for q, _ in said[:6]])
     side = "A" if all(m > 0 for _, m in said) else "B" if all(m < 0 for _, m in said) else "one side"
     return [f"{names}: whatever was shown as {side} was favoured; the ranking corrects for it."]
+
+
+def unequal_delays(delays: Sequence[ModeDelay]) -> list[str]:
+    """A sentence for each way in which modes were delayed unequally."""
+    said = []
+    for name, unit, limit, digits in (
+        ("latency_median_ms", " ms", UNEQUAL_MS, 0),
+        ("skipped_percent", " %", UNEQUAL_SKIPPED_PERCENT, 1),
+    ):
+        known = sorted((getattr(d, name), d.mode) for d in delays if not isnan(getattr(d, name)))
+        if len(known) < 2 or known[-1][0] - known[0][0] <= limit:
+            continue
+        (low, prompt), (high, laggy) = known[0], known[-1]
+        what = "The input delay" if unit == " ms" else "The share of skipped ticks"
+        said.append(
+            f"{what} was unequal: {high:.{digits}f}{unit} with {isolated(laggy)}, "
+            f"{low:.{digits}f}{unit} with {isolated(prompt)}. That alone can decide a comparison."
+        )
+    return said
+
+
+def _about_what_is_left_out(excluded: LagExclusion | None) -> list[str]:
+    if excluded is None or not excluded.comparisons:
+        return []
+    left = len(excluded.comparisons)
+    return [
+        f"{left:,} of {excluded.total:,} comparisons are left out because of lag. Who has a slow machine may "
+        "differ from who has not: see what it changes below."
+    ]
 
 
 def _about_checks(checks: int) -> list[str]:

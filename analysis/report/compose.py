@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from analysis.answer_shares import answer_shares
+from analysis.data_quality import DataQuality
 from analysis.figures.answers import MOST_PAIRS, draw_answers
 from analysis.figures.chains import draw_chains
 from analysis.figures.labels import isolated, one_line, percent_in_words
@@ -15,6 +16,7 @@ from analysis.report import page as pages
 from analysis.report.findings import findings, lead, listed
 from analysis.report.methods import methods, references
 from analysis.report.page import Page, Section
+from analysis.report.quality import checks_section, delay_section, exclusion_section
 from analysis.report.summary import known_comparisons
 from analysis.results import Fit
 from analysis.stuck import StuckRate, stuck_contrasts
@@ -35,6 +37,7 @@ def compose(
     table: ResponseTable,
     fit: Fit,
     rates: Sequence[StuckRate],
+    quality: DataQuality,
     study: Study | None,
     cautions: Sequence[str],
     versions: dict[str, str],
@@ -47,6 +50,9 @@ def compose(
         _ranks(fit, tag),
         _answers(table, fit, tag),
         _stuck(rates, tag),
+        delay_section(quality.delays),
+        exclusion_section(quality.excluded),
+        checks_section(quality.checks),
         _parameters(fit, tag),
         _diagnostics(fit, tag),
     ]
@@ -231,6 +237,6 @@ def _provenance(
         ("Source", simulated_tag(table) or "people, as far as the data say"),
         ("Engine and seed", f"{fit.settings.engine}, {fit.settings.seed}"),
         ("Versions", listed([f"{name} {number}" for name, number in versions.items()])),
-        ("Beside this page", "worth.csv, pairwise.csv, parameters.csv, summary.json, posterior.nc, figures"),
+        ("Beside this page", "CSV files of all tables, summary.json, posterior.nc, figures"),
     ]
     return tuple(rows)

@@ -58,7 +58,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with a figure, its caption and the table behind it.
+    """A heading with a figure, its caption and the table behind it; or with words and a table alone.
 
     On a screen every table opens below its figure. On paper a short one can stand there (``here``),
     a long one at the end (``appended``), and one whose numbers the figure already prints need not (``no``).
@@ -70,6 +70,12 @@ class Section:
     caption: str
     table: Table | None
     paper: Literal["here", "appended", "no"] = "no"
+    words: tuple[str, ...] = ()
+
+    @property
+    def is_open(self) -> bool:
+        """True if the table stands by itself, not behind a figure."""
+        return bool(self.words) and not self.drawings
 
     @property
     def is_printed(self) -> bool:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from analysis.lag import LagExclusion
 from analysis.report.tables import neutralised_names
 from analysis.results import Fit
 from data.responses import ResponseTable
@@ -41,7 +42,12 @@ def known_comparisons(rows: pd.DataFrame) -> int:
 
 
 def summarise(
-    table: ResponseTable, fit: Fit, study: Study | None, cautions: Sequence[str], checks: int
+    table: ResponseTable,
+    fit: Fit,
+    study: Study | None,
+    cautions: Sequence[str],
+    checks: int,
+    excluded: LagExclusion | None = None,
 ) -> dict[str, Json]:
     """The summary as plain values; nan and infinity become null."""
     rows = table.rows[~table.rows["check"].astype(bool)]
@@ -71,6 +77,14 @@ def summarise(
             "attention_checks": checks,
             "modes": len(fit.modes),
             "questions": len(fit.questions),
+        },
+        "left_out_for_lag": None
+        if excluded is None
+        else {
+            "max_latency_ms": excluded.limits.latency_ms,
+            "max_skipped_percent": excluded.limits.skipped_percent,
+            "comparisons": list(excluded.comparisons),
+            "of": excluded.total,
         },
         "rhat_max": _finite(fit.rhat_max),
         "ess_min": _finite(fit.ess_min),

@@ -2,8 +2,11 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import fields
 from pathlib import Path
 
+from analysis.checks import CheckShare
+from analysis.lag import LagChange, ModeDelay
 from analysis.results import Fit, Quantity, QuestionFit
 from analysis.stuck import StuckRate
 
@@ -98,6 +101,21 @@ def write_tables(
             folder / "stuck.csv",
             ("mode", "comparisons", "stuck", "rate_mean", "rate_hdi_low", "rate_hdi_high"),
             ((r.mode, r.comparisons, r.stuck, r.rate_mean, r.rate_hdi_low, r.rate_hdi_high) for r in stuck),
+        )
+
+
+def write_quality(
+    delays: Sequence[ModeDelay], changes: Sequence[LagChange], checks: Sequence[CheckShare], folder: Path
+) -> None:
+    """Write ``delay.csv``, ``lag.csv`` and ``checks.csv``, each if there is anything to write."""
+    for name, rows in (("delay", delays), ("lag", changes)):
+        if rows:
+            header = [field.name for field in fields(rows[0])]
+            write_csv(folder / f"{name}.csv", header, ([getattr(r, h) for h in header] for r in rows))
+    if checks:
+        header = ["participant", "answers", "same", "share"]
+        write_csv(
+            folder / "checks.csv", header, ((s.participant, s.answers, s.same, s.share) for s in checks)
         )
 
 

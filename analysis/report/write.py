@@ -4,15 +4,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from analysis.data_quality import data_quality
+from analysis.lag import LagExclusion
 from analysis.posterior import write_posterior
 from analysis.report.cautions import cautions
 from analysis.report.findings import findings
 from analysis.report.summary import Json, summarise, versions, write_summary
-from analysis.report.tables import write_tables
+from analysis.report.tables import write_quality, write_tables
 from analysis.results import Fit
 from analysis.stuck import StuckRate, stuck_rates
 from data.locations import writing_folder
-from data.responses import ResponseTable, StuckTable
+from data.responses import LagTable, ResponseTable, StuckTable
 from data.study import Study
 
 Progress = Callable[[int, int, str], None]
@@ -27,6 +29,9 @@ OWNS = (
     "pairwise.csv",
     "parameters.csv",
     "stuck.csv",
+    "delay.csv",
+    "lag.csv",
+    "checks.csv",
     "summary.json",
     "posterior.nc",
 )
@@ -58,6 +63,8 @@ def write_report(
     stuck: StuckTable | None = None,
     study: Study | None = None,
     progress: Progress | None = None,
+    lag: LagTable | None = None,
+    excluded: LagExclusion | None = None,
 ) -> ReportResult:
     """Write ``report.html``, its figures, and the tables, summary and posterior to a folder.
 
@@ -73,6 +80,10 @@ def write_report(
         Names the study and how its trials were made.
     progress : callable or None
         Called with steps done, steps in all and what is being written.
+    lag : LagTable or None
+        Where people guided the robot: how promptly it followed, in all comparisons.
+    excluded : LagExclusion or None
+        What ``table`` and ``stuck`` leave out because of lag, and what that changes.
 
     Raises
     ------
@@ -84,11 +95,13 @@ def write_report(
     tell = progress or (lambda done, total, now: None)
     rates = _known_rates(stuck, fit)
     checks = int(table.rows.loc[table.rows["check"].astype(bool), "count"].sum())
-    said = cautions(table, fit, findings(fit), study, checks)
-    summary = summarise(table, fit, study, said, checks)
+    quality = data_quality(table, fit.modes, lag, excluded)
+    said = cautions(table, fit, findings(fit), study, checks, quality)
+    summary = summarise(table, fit, study, said, checks, excluded)
     with writing_folder(out, marker=MARKER, owns=OWNS) as folder:
         tell(0, STEPS, "tables")
         write_tables(fit, rates, [("", rate.between) for rate in rates], folder)
+        write_quality(quality.delays, excluded.changes if excluded else (), quality.checks, folder)
         write_summary(summary, folder / "summary.json")
         tell(1, STEPS, "posterior")
         write_posterior(fit, folder / "posterior.nc")
@@ -96,7 +109,7 @@ def write_report(
         from analysis.report.compose import compose
         from analysis.report.page import render
 
-        page = compose(table, fit, rates, study, said, versions(fit.settings.engine))
+        page = compose(table, fit, rates, quality, study, said, versions(fit.settings.engine))
         figures = folder / "figures"
         figures.mkdir()
         for section in (page.worth, *page.sections):

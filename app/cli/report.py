@@ -43,6 +43,22 @@ def report(
     link: Annotated[Link, typer.Option(help="adjacent: three-level questions only.")] = Link.cumulative,
     seed: Annotated[int, typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the sampler.")] = 2017,
     include_simulated: SimulatedOption = False,
+    max_latency_ms: Annotated[
+        float | None,
+        typer.Option(
+            "--max-latency-ms",
+            metavar="X",
+            help="Leave out comparisons with a guided lap whose input delay (95th percentile) is above X ms.",
+        ),
+    ] = None,
+    max_skipped: Annotated[
+        float | None,
+        typer.Option(
+            "--max-skipped",
+            metavar="PERCENT",
+            help="Leave out comparisons with a guided lap that skipped more of its control ticks.",
+        ),
+    ] = None,
 ) -> None:
     """Rank the modes per question and write report.html, figures and tables.
 
@@ -51,13 +67,20 @@ def report(
     elbowroom report --store study.sqlite --out report
 
     elbowroom report --responses answers.csv --study carmichael2017 --out report
+
+    elbowroom report --store study.sqlite --max-latency-ms 100 --max-skipped 1 --out report
     """
+    from analysis.lag import LagLimits
     from app.reporting import Request, make_report
 
     if store is not None and responses is not None:
         raise InputError("give --store or --responses, not both")
     if not 0.01 <= prior_sd <= 100:
         raise InputError(f"--prior-sd: {prior_sd:g} is not between 0.01 and 100")
+    if max_latency_ms is not None and not 0 < max_latency_ms <= 60_000:
+        raise InputError(f"--max-latency-ms: {max_latency_ms:g} is not above 0 and up to 60000")
+    if max_skipped is not None and not 0 <= max_skipped <= 100:
+        raise InputError(f"--max-skipped: {max_skipped:g} is not between 0 and 100")
     make_report(
         Request(
             out=out,
@@ -71,5 +94,6 @@ def report(
             prior_sd=prior_sd,
             link=link.value,
             seed=seed,
+            lag_limits=LagLimits(max_latency_ms, max_skipped),
         )
     )

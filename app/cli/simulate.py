@@ -23,8 +23,8 @@ def simulate(
     Example: elbowroom simulate --study carmichael2017 --store study.sqlite --participants 7 --seed 1
     """
     from app.cli.progress import progress
-    from app.cohort import check_can_be_simulated, simulate_cohort
-    from app.studies import open_study
+    from app.cohort import simulate_cohort
+    from app.studies import check_can_be_simulated, open_study
     from data.locations import default_store
     from data.store import Store
 

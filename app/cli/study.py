@@ -1,11 +1,13 @@
 """`elbowroom study`: the built-in studies, and the check of a study file."""
 
+from collections.abc import Iterator
 from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
+from data.study import Study
 from data.study_file import built_in_studies
 
 cli = typer.Typer(help="Built-in studies, and the check of a study file.")
@@ -22,7 +24,10 @@ def list_() -> None:
 
     for name in built_in_studies():
         study = open_study(name).study
-        print(f"{name}  {study.title} ({len(study.modes)} modes, {len(study.questions)} questions)")
+        print(
+            f"{name}  {study.title} ({len(study.modes)} modes, {len(study.questions)} questions, "
+            f"{study.protocol.trial_source} trials)"
+        )
 
 
 @cli.command("check")
@@ -31,17 +36,16 @@ def check(source: Source) -> None:
 
     Example: elbowroom study check my_study.toml
     """
-    from app.cohort import check_can_be_simulated
-    from app.studies import open_study
+    from app.studies import check_can_be_run, open_study
     from data.schedule import plan_session
 
     study = open_study(source).study
-    check_can_be_simulated(study, source)
+    check_can_be_run(study, source)
     comparisons = len(plan_session(study, 1))
     print(
-        f"{source}: valid. {study.name} version {study.version}, {len(study.modes)} modes, "
-        f"{len(study.questions)} questions, {comparisons} comparisons a participant, "
-        f"hash {study.sha256[:12]}"
+        f"{source}: valid. {study.name} version {study.version}, {study.protocol.trial_source} trials, "
+        f"{len(study.modes)} modes, {len(study.questions)} questions, "
+        f"{comparisons} comparisons a participant, hash {study.sha256[:12]}"
     )
 
 
@@ -58,26 +62,65 @@ def show(source: Source = "carmichael2017") -> None:
     console.print(f"[bold]{study.title}[/bold]  {study.name}, version {study.version}", highlight=False)
     if study.description:
         console.print(study.description, highlight=False)
-    modes = Table("Mode", "Method", "Parameters", box=None, header_style="dim")
-    for mode, resolved in zip(study.modes, opened.modes, strict=True):
-        values = zip(resolved.method.parameter_names, resolved.values, strict=True)
-        given = ", ".join(f"{name} = {value:g}" for name, value in values)
-        modes.add_row(mode.name, mode.method, given)
+    if opened.modes:
+        modes = Table("Mode", "Method", "Parameters", box=None, header_style="dim")
+        for mode, resolved in zip(study.modes, opened.modes, strict=True):
+            values = zip(resolved.method.parameter_names, resolved.values, strict=True)
+            given = ", ".join(f"{name} = {value:g}" for name, value in values)
+            modes.add_row(mode.name, mode.method, given)
+    else:
+        modes = Table("Mode", "On the robot", box=None, header_style="dim")
+        for mode in study.modes:
+            modes.add_row(mode.name, mode.description)
     questions = Table("Question", "Wording", "Levels", "Ranks first when", box=None, header_style="dim")
     for question in study.questions:
         questions.add_row(question.name, question.wording, str(question.levels), question.short)
-    protocol = study.protocol
     console.print(modes)
     console.print(questions)
-    console.print(
-        f"Protocol: {len(study.pairs)} pairs, each {protocol.repetitions} times, "
-        f"{protocol.laps_per_condition} laps per condition, {protocol.trial_source} trials, "
-        f"{protocol.attention_checks} attention checks, seed {study.seed}",
-        highlight=False,
-    )
+    for line in _protocol(study):
+        console.print(line, highlight=False)
+    if study.protocol.trial_source == "external":
+        return
     console.print(
         f"Maze: y {study.maze.left_y_m:g} to {study.maze.right_y_m:g} m, z {study.maze.top_z_m:g} to "
         f"{study.maze.bottom_z_m:g} m, wall at x = {study.maze.wall_x_m:g} m. Stuck: sigma_min below "
         f"{study.stuck.sigma_below:g} for longer than {study.stuck.dwell_s:g} s ({study.stuck.definition})",
         highlight=False,
     )
+
+
+_WHO_MOVES = {
+    "guided": "Each participant guides the simulated robot in the browser",
+    "observed": "Participants watch laps of a simulated operator",
+    "external": "A robot in the lab, which an operator tends",
+}
+
+
+def _protocol(study: Study) -> Iterator[str]:
+    """What a participant goes through, a line a thing."""
+    protocol = study.protocol
+    laps = (
+        "" if protocol.trial_source == "external" else f"{protocol.laps_per_condition} laps per condition, "
+    )
+    yield (
+        f"Protocol: {len(study.pairs)} pairs, each {protocol.repetitions} times, {laps}"
+        f"at least {protocol.minimum_exposure_s:g} s of each, {protocol.trial_source} trials, "
+        f"{protocol.attention_checks} attention checks, seed {study.seed}"
+    )
+    yield f"Trials: {_WHO_MOVES[protocol.trial_source]}"
+    if study.background:
+        asked = ", ".join(f"{q.name}{' (required)' if q.required else ''}" for q in study.background)
+        yield f"Background: {asked}"
+    if study.has_practice:
+        maze = study.practice_study.maze
+        yield (
+            f"Practice: {study.practice.laps} lap{'' if study.practice.laps == 1 else 's'} with "
+            f"{study.practice_mode}, "
+            f"y {maze.left_y_m:g} to {maze.right_y_m:g} m"
+        )
+    coming_back = {
+        "resume": "goes on where they left",
+        "restart_comparison": "begins the open comparison anew",
+    }[protocol.returning]
+    within = f", within {protocol.returning_within_h:g} h of joining" if protocol.returning_within_h else ""
+    yield f"Coming back: a participant {coming_back}{within}"

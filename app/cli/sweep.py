@@ -28,12 +28,13 @@ def sweep(
     Example: elbowroom sweep --right-edge -1.03:-1.06:4 --dwell 3:7:5 --participants 20 --out sweep
     """
     from app.cli.progress import progress
-    from app.studies import open_study
+    from app.studies import open_study, resolved_modes
     from data.locations import check_folder
     from sim_trials.sweep import SURFACE_TABLE, write_sweep
     from sim_trials.sweep import sweep as run_sweep
 
     opened = open_study(study)
+    resolved_modes(opened.study, study)
     edges, dwells = parse_grid("--right-edge", right_edge), parse_grid("--dwell", dwell)
     check_folder(out, SURFACE_TABLE)
     with progress("Sweep") as report:

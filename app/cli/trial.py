@@ -25,11 +25,12 @@ def trial(
 
     Example: elbowroom trial --mode M1 --operator-seed 3 --out lap.parquet
     """
-    from app.studies import open_study
+    from app.studies import open_study, resolved_modes
     from sim_trials.operators import draw_operator
     from sim_trials.trial import run_trial
 
     opened = open_study(study)
+    resolved_modes(opened.study, study)
     result = run_trial(opened.study, mode, draw_operator(operator_seed), seed=seed)
     sha256 = result.recording.write(out) if out is not None else None
     if json:
