@@ -1,5 +1,7 @@
 """`elbowroom serve`: the study in the browser."""
 
+import os
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -17,14 +19,21 @@ def serve(
     workers: Annotated[
         int | None, typer.Option(min=1, max=64, metavar="N", help="Processes that run the robot.")
     ] = None,
+    passphrase_file: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Passphrase that opens the console; or set ELBOWROOM_PASSPHRASE."),
+    ] = None,
 ) -> None:
     """Serve the participant's pages and the researcher's console.
 
-    Prints a link for participants and a one-time link for the researcher.
+    Prints a link for participants and a one-time link for the researcher. With a passphrase, the console
+    opens at /researcher too.
 
     Example: elbowroom serve --study carmichael2017 --store study.sqlite
     """
+    from app.server.passphrase import read_passphrase
     from app.server.serving import serve as run_server
     from data.locations import default_store
 
-    run_server(study, store or default_store(), host, port, workers)
+    passphrase = read_passphrase(passphrase_file, os.environ)
+    run_server(study, store or default_store(), host, port, workers, passphrase)

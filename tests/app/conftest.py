@@ -51,10 +51,15 @@ wording = "Which method felt safest to use?"
 short = "safest"
 levels = 3
 [protocol]
+trial_source = "observed"
 repetitions = 1
 laps_per_condition = 1
 minimum_exposure_s = 0.5
 """
+GUIDED_STUDY = TINY_STUDY.replace('trial_source = "observed"', 'trial_source = "guided"') + (
+    "[maze]\nright_y_m = 0.1\nbottom_z_m = 0.3\n[practice]\nlaps = 1\nright_y_m = 0.2\n"
+)
+"""The tiny study for people who guide the robot themselves, on a maze that takes seconds."""
 SECRETS = ("Zwetschge", "Mirabelle", "Quitte", "Zweifelhaft", "lambda", "dls", "sigma", "damping")
 """What no participant's browser may ever receive of the tiny study, in any case of letters."""
 
@@ -111,14 +116,15 @@ class Server:
         finally:
             connection.close()
 
-    def join(self) -> tuple[str, Participant]:
-        """A new participant, whose first comparison is open: the cookie and who it is."""
+    def join(self, *, starts: bool = True) -> tuple[str, Participant]:
+        """A new participant, whose first comparison is open if it starts: the cookie and who it is."""
         stored = self.store.studies()[0]
         desk = Desk(stored, self.store, LapKeeper(stored.study, self.store.recordings_folder, 1))
         cookie = new_participant_cookie(desk, self.participant_url.rpartition("/")[2])
         assert cookie is not None
         participant = admit(desk, cookie)
-        self.store.start_comparison(f"{participant.id}.c1", self.store.clock())
+        if starts:
+            self.store.start_comparison(f"{participant.id}.c1", self.store.clock())
         return cookie, participant
 
 
@@ -158,4 +164,11 @@ def serving(folder: Path, study: str) -> Iterator[Server]:
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """One server for all tests that don't end it."""
     with serving(tmp_path_factory.mktemp("served"), TINY_STUDY) as running:
+        yield running
+
+
+@pytest.fixture(scope="session")
+def guided_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One server of the guided study for all tests that don't end it."""
+    with serving(tmp_path_factory.mktemp("guided"), GUIDED_STUDY) as running:
         yield running

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,8 @@ import pandas as pd
 import pytest
 
 from app.cli.main import cli, run
+from app.studies import open_study
+from data.study_file import study_text
 
 RESPONSES = """participant,question,mode_a,mode_b,response
 p1,Q1,M1,M2,A>>B
@@ -41,7 +44,7 @@ def responses(tmp_path: Path) -> Path:
     [
         (
             ["study", "check", "nowhere.toml"],
-            "no such file, and no built-in study (built in: carmichael2017)",
+            "no such file, and no built-in study (built in: carmichael2017, ",
         ),
         (["trial", "--mode", "M9"], "mode: 'M9' is not one of: M1, M2, M3"),
         (["trial", "--mode", "M1", "--operator-seed", "-1"], "--operator-seed"),
@@ -50,6 +53,16 @@ def responses(tmp_path: Path) -> Path:
         (["report", "--responses", "x.csv", "--engine", "quick", "--out", "r"], "'fast', 'pymc', 'gibbs'"),
         (["report", "--store", "nosuch://x", "--out", "r"], "nosuch"),
         (["report", "--store", "missing.sqlite", "--out", "r"], "missing.sqlite"),
+        (
+            ["report", "--responses", "x.csv", "--max-latency-ms", "50", "--out", "r"],
+            "a CSV of responses knows no",
+        ),
+        (
+            ["report", "--responses", "x.csv", "--max-skipped", "1", "--out", "r"],
+            "a CSV of responses knows no",
+        ),
+        (["report", "--max-latency-ms", "nan", "--out", "r"], "--max-latency-ms: nan is not above 0"),
+        (["report", "--max-skipped", "101", "--out", "r"], "--max-skipped: 101 is not between 0 and 100"),
         (["import"], "--responses FILE.csv and --stuck FILE.csv"),
         (["sweep", "--right-edge", "1:2", "--out", "s"], "--right-edge: '1:2' is no range"),
         (["sweep", "--dwell", "3:7:1000000000000", "--out", "s"], "at most 1000 values"),
@@ -73,12 +86,87 @@ def test_wrong_input_is_one_plain_line_and_exit_2_and_nothing_is_written(
 def test_a_study_file_with_an_unknown_method_is_refused_with_the_valid_ones(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from data.study_file import study_text
-
     path = tmp_path / "mine.toml"
     path.write_text(study_text("carmichael2017").replace('method = "dls"', 'method = "dsl"', 1))
     assert run(["study", "check", str(path)]) == 2
     assert "mode M1: method: 'dsl' is not one of: asymmetric_dls, " in only_line(capsys.readouterr().err)
+
+
+def test_a_mode_without_a_method_is_refused_with_the_valid_ones_where_the_robot_is_simulated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = without_methods(study_text("carmichael2017"))
+    path = tmp_path / "mine.toml"
+    for source in ("guided", "observed"):
+        path.write_text(text.replace('trial_source = "guided"', f'trial_source = "{source}"'))
+        assert run(["study", "check", str(path)]) == 2
+        said = only_line(capsys.readouterr().err)
+        assert said.startswith(f"{path}: modes.1.method: missing; mode M1 needs one of: asymmetric_dls, ")
+
+
+def test_a_study_of_a_robot_in_the_lab_needs_no_method_but_cannot_be_simulated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "lab.toml"
+    text = without_methods(study_text("carmichael2017"))
+    path.write_text(text.replace('trial_source = "guided"', 'trial_source = "external"'))
+    assert open_study(path).modes == ()
+    assert run(["study", "check", str(path)]) == 0
+    assert "external trials" in capsys.readouterr().out
+    assert run(["study", "show", str(path)]) == 0
+    shown = capsys.readouterr().out
+    assert "A robot in the lab, which an operator tends" in shown
+    assert "Practice" not in shown
+    assert "Maze" not in shown
+    store = tmp_path / "study.sqlite"
+    assert run(["simulate", "--study", str(path), "--store", str(store), "--participants", "1"]) == 2
+    assert (
+        "cannot be simulated: its trials are external, and no method is named for the modes M1, M2, M3"
+        in (" ".join(only_line(capsys.readouterr().err).split()))
+    )
+    assert run(["trial", "--study", str(path), "--mode", "M1"]) == 2
+    assert "modes.1.method: missing" in only_line(capsys.readouterr().err)
+    assert not store.exists()
+
+
+def test_a_method_of_a_robot_in_the_lab_is_not_looked_up_until_it_is_simulated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "lab.toml"
+    text = study_text("carmichael2017").replace('trial_source = "guided"', 'trial_source = "external"')
+    path.write_text(text.replace('method = "dls"', 'method = "ours"', 1))
+    assert run(["study", "check", str(path)]) == 0
+    store = tmp_path / "study.sqlite"
+    assert run(["simulate", "--study", str(path), "--store", str(store), "--participants", "1"]) == 2
+    assert "mode M1: method: 'ours' is not one of: " in only_line(capsys.readouterr().err)
+
+
+def test_practice_out_of_reach_is_refused_where_people_guide_and_only_there(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.toml"
+    text = study_text("carmichael2017").replace("right_y_m = -0.50", "right_y_m = -1.2")
+    path.write_text(text)
+    assert run(["study", "check", str(path)]) == 2
+    assert "practice.right_y_m: the robot does not reach the corner y = -1.045" in only_line(
+        capsys.readouterr().err
+    )
+    path.write_text(text.replace('trial_source = "guided"', 'trial_source = "observed"'))
+    assert run(["study", "check", str(path)]) == 0
+    path.write_text(text.replace("laps = 1\n", "laps = 0\n"))
+    assert run(["study", "check", str(path)]) == 0
+
+
+def test_what_participants_of_a_guided_study_go_through_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["study", "show", "carmichael2017"]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "Trials: Each participant guides the simulated robot in the browser" in shown
+    assert "Background: robots, games, hand" in shown
+    assert "Practice: 1 lap with M1, y 0.35 to -0.5 m" in shown
+
+
+def without_methods(text: str) -> str:
+    return re.sub(r"(?m)^(method|parameters) = .*\n", "", text)
 
 
 def test_a_report_from_a_csv_ranks_and_writes_the_contract_s_files(
