@@ -5,7 +5,20 @@ from collections.abc import Sequence
 
 import typer
 
-from app.cli import demo, doctor, exchange, power, report, serve, simulate, study, sweep, trial
+from app.cli import (
+    calibrate,
+    demo,
+    doctor,
+    exchange,
+    load,
+    power,
+    report,
+    serve,
+    simulate,
+    study,
+    sweep,
+    trial,
+)
 from data.errors import ElbowroomError
 
 cli = typer.Typer(
@@ -22,6 +35,8 @@ cli.command("simulate")(simulate.simulate)
 cli.command("trial")(trial.trial)
 cli.command("sweep")(sweep.sweep)
 cli.command("power")(power.power)
+cli.command("load")(load.load)
+cli.command("calibrate")(calibrate.calibrate)
 cli.command("report")(report.report)
 cli.command("export")(exchange.export)
 cli.command("import")(exchange.import_)

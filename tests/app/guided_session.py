@@ -12,11 +12,12 @@ import shutil
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 
-from playwright.sync_api import Locator, Page, WebSocket, expect, sync_playwright
+from playwright.sync_api import Locator, Page, TimeoutError, WebSocket, expect, sync_playwright
 from rich.console import Console
 from rich.table import Table
 
@@ -179,7 +180,9 @@ def lead_on(page: Page, goal: Locator, pictures: Path | None = None) -> None:
             if title not in seen:
                 picture(page, pictures, f"page_{len(seen)}_{title.lower().replace(' ', '_')[:24]}")
                 seen.add(title)
-                go_on.click()
+                # The page may have turned meanwhile.
+                with suppress(TimeoutError):
+                    go_on.click(timeout=2000)
         page.wait_for_timeout(100)
 
 

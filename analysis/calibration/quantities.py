@@ -1,0 +1,74 @@
+"""What is ranked: every quantity a report shows, and one that sees whether the data were used at all."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.calibration.world import Design, Truth
+from analysis.counts import Counts
+from analysis.model import Model, adjacent_log_probabilities, cumulative_log_probabilities
+from analysis.results import Draws
+from analysis.softmax import worth_of
+
+LOG_LIKELIHOOD = "log_likelihood"
+"""Log-likelihood of the answers if nobody differed from the common abilities.
+
+Ranks of parameters alone are uniform for an engine that ignores the data and returns its prior; those of a
+function of parameters and data are not (Modrák et al. 2025).
+"""
+
+FloatArray = NDArray[np.float64]
+
+
+def quantities(draws: Draws, counts: Counts, model: Model, design: Design) -> dict[str, FloatArray]:
+    """Every quantity of a posterior by name, each of shape (draw,): chains laid end to end.
+
+    Parameters
+    ----------
+    draws : Draws
+        Modes in the order of the design.
+    counts : Counts
+        The answers the draws were made from.
+    """
+    ability, worth = (x.reshape(-1, design.n_modes) for x in (draws.ability, draws.worth))
+    parameters = {name: draws.parameters[name].ravel() for name in model.parameter_names}
+    return _named(ability, worth, parameters, counts, model, design)
+
+
+def true_quantities(truth: Truth, counts: Counts, model: Model, design: Design) -> dict[str, float]:
+    """The same quantities of the truth."""
+    ability = truth.ability[None]
+    parameters = {name: np.array([value]) for name, value in truth.parameters.items()}
+    found = _named(ability, worth_of(ability), parameters, counts, model, design)
+    return {name: float(value[0]) for name, value in found.items()}
+
+
+def _named(
+    ability: FloatArray,
+    worth: FloatArray,
+    parameters: dict[str, FloatArray],
+    counts: Counts,
+    model: Model,
+    design: Design,
+) -> dict[str, FloatArray]:
+    modes = design.modes
+    named = {f"ability {mode}": ability[:, k] for k, mode in enumerate(modes)}
+    named |= {f"worth {mode}": worth[:, k] for k, mode in enumerate(modes)}
+    named |= {f"{modes[i]} - {modes[j]}": ability[:, i] - ability[:, j] for i, j in design.pairs}
+    named |= parameters
+    return named | {LOG_LIKELIHOOD: _log_likelihood(ability, parameters, counts, model)}
+
+
+def _log_likelihood(
+    ability: FloatArray, parameters: dict[str, FloatArray], counts: Counts, model: Model
+) -> FloatArray:
+    cells = counts.pooled()
+    lead = ability[:, cells.mode_a] - ability[:, cells.mode_b]
+    if "side_effect" in parameters:
+        lead = lead + parameters["side_effect"][:, None]
+    if model.link == "adjacent":
+        log_p = adjacent_log_probabilities(lead, parameters["log_nu"][:, None])
+    else:
+        cuts = [parameters[f"cut_{k + 1}"] for k in range(model.n_gaps)]
+        at = np.stack(cuts, axis=-1) if cuts else np.zeros((len(ability), 0))
+        log_p = cumulative_log_probabilities(lead, at[:, None, :], model.levels)
+    return (cells.responses * log_p).sum(axis=(1, 2))
