@@ -67,6 +67,10 @@ def _cache_folder(source: str) -> str | None:
     """The folder for machine code of the functions in one file; None where none can be written."""
     root = _cache_root()
     sources = _sources(Path(source), {})
+    if sources and _PACKAGE not in Path(source).parents:
+        # A method from another package: what it calls there stands beside it.
+        for neighbour in Path(source).parent.glob("*.py"):
+            _sources(neighbour, sources)
     if root is None or not sources:
         return None
     digest = hashlib.sha256(numba.__version__.encode())

@@ -1,14 +1,18 @@
 """`elbowroom study`: the built-in studies, and the check of a study file."""
 
 from collections.abc import Iterator
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
+from app.cli.options import CORES, JobsOption, OutOption
 from data.study import Study
 from data.study_file import built_in_studies
+
+if TYPE_CHECKING:
+    from sim_trials.modes.method import ResolvedMode
 
 cli = typer.Typer(help="Built-in studies, and the check of a study file.")
 Source = Annotated[str, typer.Argument(metavar="S", help="A study file, or the name of a built-in study.")]
@@ -76,6 +80,8 @@ def show(source: Source = "carmichael2017") -> None:
     for question in study.questions:
         questions.add_row(question.name, question.wording, str(question.levels), question.short)
     console.print(modes)
+    if opened.modes:
+        console.print(_behaviour(study, opened.modes))
     console.print(questions)
     for line in _protocol(study):
         console.print(line, highlight=False)
@@ -89,11 +95,63 @@ def show(source: Source = "carmichael2017") -> None:
     )
 
 
+@cli.command("atlas")
+def atlas(
+    source: Source,
+    out: OutOption,
+    operators: Annotated[
+        int,
+        typer.Option("--operators", min=0, max=1000, metavar="N", help="Simulated laps under each mode."),
+    ] = 6,
+    jobs: JobsOption = CORES,
+) -> None:
+    """How each mode behaves towards the singularity and away from it, on one page.
+
+    Example: elbowroom study atlas carmichael2017 --out atlas
+    """
+    from app.atlas import PAGE, study_atlas, write_atlas
+    from app.cli.progress import progress
+    from app.studies import open_study
+    from data.locations import check_folder
+
+    study = open_study(source).study
+    check_folder(out, PAGE)
+    with progress("Atlas") as report:
+        made = study_atlas(study, source, operators, jobs, report)
+    for laps in made.laps:
+        print(f"{laps.name}: {laps.verdict}")
+    print("\n".join(str(path) for path in write_atlas(made, out)))
+
+
 _WHO_MOVES = {
     "guided": "Each participant guides the simulated robot in the browser",
     "observed": "Participants watch laps of a simulated operator",
     "external": "A robot in the lab, which an operator tends",
 }
+
+
+_SHOWN_SIGMA = (0.2, 0.1, 0.02)
+
+
+def _behaviour(study: Study, resolved: "tuple[ResolvedMode, ...]") -> Table:
+    """Each mode into the elbow-lock and out of it: the gain that is left, and the fastest joint."""
+    import numpy as np
+
+    from sim_trials.mode_atlas import mode_curves
+
+    gains = [f"Gain in, out at \u03c3 = {sigma:g}" for sigma in _SHOWN_SIGMA]
+    table = Table("Mode", *gains, "Fastest joint", "A call", box=None, header_style="dim")
+    for mode in resolved:
+        curves = mode_curves(mode, study.maze)
+        shown = []
+        for sigma in _SHOWN_SIGMA:
+            at = int(np.argmin(np.abs(curves.sigma - sigma)))
+            shown.append(f"{curves.towards.gain[at]:.2f}, {curves.away.gain[at]:.2f}")
+        fastest = max(curves.towards.joint_speed.max(), curves.away.joint_speed.max())
+        table.add_row(
+            mode.name, *shown, f"{fastest:.0%} of its limit", f"{curves.cost_ns / 1000:.1f} \u00b5s"
+        )
+    return table
 
 
 def _protocol(study: Study) -> Iterator[str]:

@@ -56,6 +56,19 @@ class Property(StrEnum):
     INVERSE_ABOVE_SIGMA_T = "inverse_above_sigma_t"
     """J qdot = xdot wherever sigma is at least the parameter ``sigma_t``."""
 
+    WITHIN_SPEED_SHARE = "within_speed_share"
+    """No joint is asked for more than the parameter ``speed_share`` of its speed limit."""
+
+    WITHIN_GAMMA_MAX = "within_gamma_max"
+    """No joint is asked for more than the parameter ``gamma_max`` [rad/s]."""
+
+    DAMPED_GAIN = "damped_gain"
+    """Joint velocities are bounded by the parameter ``lambda``: |qdot| <= |xdot| / (2 lambda)."""
+
+    LEAST_RESIDUAL = "least_residual"
+    """The step has the best length for its direction: (xdot - J qdot) . J qdot = 0, as long as no joint is at
+    the parameter ``speed_share`` of its speed limit."""
+
 
 @dataclass(frozen=True)
 class Parameter:

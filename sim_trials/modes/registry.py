@@ -1,19 +1,44 @@
 """The methods that exist, and how a mode of a study becomes one of them.
 
-Every file of this folder that defines ``METHOD`` is an entry, under the file's name.
+Every file of this folder that defines ``METHOD`` is an entry, under the file's name. So is every ``METHOD``
+that an installed package names as an entry point of the group `ENTRY_POINT_GROUP`, under the entry point's
+name::
+
+    [project.entry-points."elbowroom.modes"]
+    my_method = "my_package.my_method:METHOD"
 """
 
 import importlib
 import pkgutil
+from importlib.metadata import EntryPoint, entry_points
 
 from data.errors import ElbowroomError, InputError, one_of
 from data.study import Mode
 from sim_trials import modes
-from sim_trials.modes.method import Method, ResolvedMode
+from sim_trials.modes.method import MODE_SIGNATURE, Method, ResolvedMode
+
+ENTRY_POINT_GROUP = "elbowroom.modes"
+"""Where packages announce methods of their own."""
 
 
 def discover() -> dict[str, Method]:
-    """Read every file of this folder; see the head of this module."""
+    """Read every file of this folder and every entry point; see the head of this module.
+
+    Raises
+    ------
+    ElbowroomError
+        A method has another name than its file or entry point, a name is taken, or a package that announces
+        a method cannot be imported or announces something else; the line names the file or the package.
+    """
+    found = _own()
+    for point in entry_points(group=ENTRY_POINT_GROUP):
+        if point.name in found:
+            raise ElbowroomError(f"{_described(point)}: there is a method of this name already")
+        found[point.name] = _announced(point)
+    return dict(sorted(found.items()))
+
+
+def _own() -> dict[str, Method]:
     found = {}
     for module_info in pkgutil.iter_modules(modes.__path__):
         if module_info.name == "registry":
@@ -26,6 +51,28 @@ def discover() -> dict[str, Method]:
             raise ElbowroomError(f"{module.__file__}: METHOD.name is {method.name!r}, not the file's name")
         found[method.name] = method
     return found
+
+
+def _announced(point: EntryPoint) -> Method:
+    """The method of an installed package, checked, since its author's tests may not have been."""
+    where = _described(point)
+    try:
+        method = point.load()
+    # Whatever a package raises while it is imported.
+    except Exception as error:
+        raise ElbowroomError(f"{where}: cannot be imported: {type(error).__name__}: {error}") from error
+    if not isinstance(method, Method):
+        raise ElbowroomError(f"{where}: is a {type(method).__name__}, not a sim_trials.modes.method.Method")
+    if method.name != point.name:
+        raise ElbowroomError(f"{where}: METHOD.name is {method.name!r}, not the entry point's name")
+    if tuple(MODE_SIGNATURE.args) not in getattr(method.function, "signatures", ()):
+        raise ElbowroomError(f"{where}: its function is not decorated with @mode_function")
+    return method
+
+
+def _described(point: EntryPoint) -> str:
+    package = point.dist.name if point.dist else "unknown package"
+    return f"method {point.name} of {package} ({point.value})"
 
 
 METHODS: dict[str, Method] = discover()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from data.study import Mode
-from sim_trials.kinematics import handle_jacobian
+from sim_trials.kinematics import JOINT_SPEED_LIMITS_RAD_S, handle_jacobian
 from sim_trials.modes.method import MEMORY_LENGTH, Property, ResolvedMode
 from sim_trials.modes.registry import METHODS, resolve
 from sim_trials.singular_value import smallest_singular_value
@@ -119,6 +119,53 @@ def test_far_from_singularity_it_is_the_plain_inverse(method: str) -> None:
             checked += 1
             np.testing.assert_allclose(command.qdot, np.linalg.solve(command.J, command.xdot), atol=1e-10)
     assert checked > 50
+
+
+def value(mode: ResolvedMode, parameter: str) -> float:
+    return mode.values[mode.method.parameter_names.index(parameter)]
+
+
+def speed_share(command: Command) -> float:
+    return float(np.max(np.abs(command.qdot) / JOINT_SPEED_LIMITS_RAD_S))
+
+
+@pytest.mark.parametrize("method", declaring(Property.WITHIN_SPEED_SHARE))
+def test_no_joint_passes_its_share_of_the_speed_limit(method: str) -> None:
+    fastest = 0.0
+    for mode, command in calls(method):
+        share = speed_share(command) / value(mode, "speed_share")
+        assert share <= 1 + 1e-12
+        fastest = max(fastest, share)
+    assert fastest > 0.999, "the limit was never met, so nothing was tested"
+
+
+@pytest.mark.parametrize("method", declaring(Property.WITHIN_GAMMA_MAX))
+def test_no_joint_passes_gamma_max(method: str) -> None:
+    for mode, command in calls(method):
+        assert np.abs(command.qdot).max() <= value(mode, "gamma_max") * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("method", declaring(Property.DAMPED_GAIN))
+def test_joint_velocities_are_bounded_by_the_damping(method: str) -> None:
+    for mode, command in calls(method):
+        bound = np.linalg.norm(command.xdot) / (2 * value(mode, "lambda"))
+        assert np.linalg.norm(command.qdot) <= bound * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("method", declaring(Property.LEAST_RESIDUAL))
+def test_what_is_missing_is_orthogonal_to_what_is_done(method: str) -> None:
+    checked = 0
+    for mode, command in calls(method):
+        if speed_share(command) < 0.999 * value(mode, "speed_share"):
+            done = command.J @ command.qdot
+            assert abs((command.xdot - done) @ done) <= 1e-9 * (command.xdot @ command.xdot)
+            checked += bool(done.any())
+    assert checked > 50
+
+
+@pytest.mark.parametrize("claim", Property)
+def test_every_claim_is_made_by_some_method(claim: Property) -> None:
+    assert declaring(claim)
 
 
 @pytest.mark.parametrize("method", METHODS)

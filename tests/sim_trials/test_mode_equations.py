@@ -1,0 +1,189 @@
+"""Every method of the source documents against its equation, written once more with NumPy's decomposition."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from data.study import Mode
+from sim_trials.kinematics import JOINT_SPEED_LIMITS_RAD_S, handle_jacobian
+from sim_trials.modes.method import MEMORY_LENGTH
+from sim_trials.modes.registry import resolve
+from sim_trials.singular_value import smallest_singular_value
+
+START = np.array([3.4504, -1.4226, 1.7185, -0.2959, 1.8796, 0.0])
+Equation = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+
+
+def answer(method: str, q: np.ndarray, xdot: np.ndarray, **parameters: float) -> np.ndarray:
+    mode, J, qdot = (
+        resolve(Mode(name="X", method=method, parameters=parameters)),
+        np.empty((6, 6)),
+        np.empty(6),
+    )
+    handle_jacobian(q, J)
+    mode.function(q, J, smallest_singular_value(J), xdot, 0.008, mode.packed(), np.zeros(MEMORY_LENGTH), qdot)
+    return qdot
+
+
+def samples(
+    n: int, elbow: tuple[float, float] = (0.05, 1.7)
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    rng = np.random.default_rng(41)
+    found = []
+    for _ in range(n):
+        q, J = START + rng.normal(scale=0.3, size=6), np.empty((6, 6))
+        q[2] = rng.uniform(*elbow)
+        handle_jacobian(q, J)
+        found.append((q, J, rng.normal(scale=0.03, size=6)))
+    return found
+
+
+def limited(qdot: np.ndarray, share: float = 0.5) -> np.ndarray:
+    return qdot / max(1.0, np.max(np.abs(qdot) / (share * np.array(JOINT_SPEED_LIMITS_RAD_S))))
+
+
+def by_direction(J: np.ndarray, xdot: np.ndarray, gain: Callable[[float], float]) -> np.ndarray:
+    U, sigma, Vt = np.linalg.svd(J)
+    return sum(gain(s) * Vt[i] * (U[:, i] @ xdot) for i, s in enumerate(sigma))
+
+
+def pseudo_inverse(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    return limited(np.linalg.pinv(J) @ xdot)
+
+
+def transpose(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    moved = J @ J.T @ xdot
+    return limited((xdot @ moved) / (moved @ moved) * (J.T @ xdot))
+
+
+def constant_dls(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    return np.linalg.solve(J.T @ J + 0.15**2 * np.eye(6), J.T @ xdot)
+
+
+def variable_damping_svd(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    def gain(s: float) -> float:
+        return s / (s**2 + (0.2**2 * (1 - (3 * s**2 - 2 * s**3)) if s < 1 else 0.0))
+
+    return by_direction(J, xdot, gain)
+
+
+def h(s: float, sigma0: float) -> float:
+    return (s**3 + 10 * s**2 + 2 * s + 2 * sigma0) / (s**2 + 10 * s + 2)
+
+
+def singular_value_filtering(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    return limited(by_direction(J, xdot, lambda s: 1 / h(s, 0.1)))
+
+
+def clamp(vector: np.ndarray, most: float) -> np.ndarray:
+    return vector * min(1.0, most / np.abs(vector).max())
+
+
+def sdls(J: np.ndarray, xdot: np.ndarray, gamma_max: float = 1.5) -> np.ndarray:
+    U, sigma, Vt = np.linalg.svd(J)
+    norms = np.linalg.norm(J[:3], axis=0) + np.linalg.norm(J[3:], axis=0)
+    total = np.zeros(6)
+    for i in range(6):
+        n = np.linalg.norm(U[:3, i]) + np.linalg.norm(U[3:, i])
+        m = np.abs(Vt[i]) @ norms / sigma[i]
+        total += clamp(Vt[i] * (U[:, i] @ xdot) / sigma[i], min(1.0, n / m) * gamma_max)
+    return clamp(total, gamma_max)
+
+
+def selectively_damped_dls(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    return sdls(J, xdot)
+
+
+def filtered_selectively_damped_dls(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    U, sigma, Vt = np.linalg.svd(J)
+    return sdls(U @ np.diag([h(s, 0.05) for s in sigma]) @ Vt, xdot)
+
+
+def joint_limit_damping(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    D = np.diag(0.15 + 0.5 * np.abs(q / (2 * np.pi)) ** 4)
+    return np.linalg.solve(J.T @ J + D @ D, J.T @ xdot)
+
+
+EQUATIONS: tuple[Equation, ...] = (
+    pseudo_inverse,
+    transpose,
+    constant_dls,
+    variable_damping_svd,
+    singular_value_filtering,
+    selectively_damped_dls,
+    filtered_selectively_damped_dls,
+    joint_limit_damping,
+)
+
+
+@pytest.mark.parametrize("equation", EQUATIONS, ids=lambda equation: equation.__name__)
+def test_method_is_its_equation(equation: Equation) -> None:
+    for q, J, xdot in samples(100):
+        np.testing.assert_allclose(
+            answer(equation.__name__, q, xdot), equation(q, J, xdot), rtol=1e-7, atol=1e-10
+        )
+
+
+def test_selective_damping_holds_back_some_directions_and_lets_others_go() -> None:
+    held = sum(
+        not np.allclose(answer("selectively_damped_dls", q, 5 * x), np.linalg.solve(J, 5 * x), rtol=1e-6)
+        for q, J, x in samples(100)
+    )
+    free = sum(
+        np.allclose(answer("selectively_damped_dls", q, x / 5), np.linalg.solve(J, x / 5), rtol=1e-6)
+        for q, J, x in samples(100, elbow=(1.2, 1.7))
+    )
+    assert held > 60
+    assert free > 60
+
+
+def test_a_direction_below_zero_below_gets_no_motion() -> None:
+    for q, J, xdot in samples(20, elbow=(0.01, 0.1)):
+        lost = np.linalg.svd(J)[0][:, 5]
+        qdot = answer("pseudo_inverse", q, xdot, zero_below=0.1)
+        assert abs(lost @ J @ qdot) < 1e-12
+
+
+def test_the_transpose_of_a_lost_direction_is_no_motion_and_not_a_quotient_of_zeros() -> None:
+    q = START.copy()
+    q[2] = 0.0
+    J = np.empty((6, 6))
+    handle_jacobian(q, J)
+    xdot = np.linalg.svd(J)[0][:, 5].copy()
+    qdot = answer("transpose", q, xdot)
+    assert np.isfinite(qdot).all()
+    assert np.abs(J @ qdot).max() < 1e-6
+
+
+def test_joints_near_the_end_of_their_range_move_less() -> None:
+    q = START.copy()
+    near = answer("joint_limit_damping", q, 0.1 * np.eye(6)[1], range_rad=3.5, c=5.0)
+    far = answer("joint_limit_damping", q, 0.1 * np.eye(6)[1])
+    assert abs(near[0]) < 0.5 * abs(far[0])
+
+
+class TestConditionScaling:
+    """Slow from 17, stop from 30, twice as wide when leaving."""
+
+    def scale_and_condition(self, elbow: float, way: float) -> tuple[float, float]:
+        q, J = START.copy(), np.empty((6, 6))
+        q[2] = elbow
+        handle_jacobian(q, J)
+        bend = J @ np.array([0.0, 0.0, way * 0.01, 0.0, 0.0, 0.0])
+        qdot, plain = answer("condition_scaling", q, bend), np.linalg.solve(J, bend)
+        return float(qdot @ plain / (plain @ plain)), float(np.linalg.cond(J))
+
+    def test_it_slows_down_linearly_towards_and_half_as_much_leaving(self) -> None:
+        slowed = 0
+        for elbow in np.linspace(0.2, 1.2, 60):
+            towards, condition = self.scale_and_condition(elbow, -1.0)
+            leaving, _ = self.scale_and_condition(elbow, 1.0)
+            if condition >= 30.0:
+                assert towards == leaving == 0.0
+                continue
+            over = max(condition - 17.0, 0.0) / 13.0
+            slowed += over > 0.0
+            assert towards == pytest.approx(1.0 - over, abs=1e-9)
+            assert leaving == pytest.approx(1.0 - over / 2.0, abs=1e-9)
+        assert slowed > 5
