@@ -1,16 +1,18 @@
 """The answers people gave to each pair of modes, and the shares the fitted model expects."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.counts import count_responses
+from analysis.diagnostics import hdi
 from analysis.model import adjacent_log_probabilities, cumulative_log_probabilities
-from analysis.results import Draws, Fit, QuestionFit
+from analysis.results import HDI_PROBABILITY, Draws, Fit, QuestionFit
 from data.responses import ResponseTable
 
-_DRAWS_USED = 400
+DRAWS_USED = 400
 """Thinned to about this many: the error of a mean share is then far below what a drawing shows."""
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(15)
 
@@ -26,17 +28,38 @@ class PairShares:
     expected : tuple of float
         Posterior mean share of each answer among new people who see the pair in the same
         orders; empty where the model has none.
+    expected_low, expected_high : tuple of float
+        94 % HDI of these shares.
     """
 
     mode_i: str
     mode_j: str
     counts: tuple[int, ...]
     expected: tuple[float, ...] = ()
+    expected_low: tuple[float, ...] = ()
+    expected_high: tuple[float, ...] = ()
 
     @property
     def n(self) -> int:
         """Answers to this pair."""
         return sum(self.counts)
+
+
+@dataclass(frozen=True)
+class ThinnedDraws:
+    """Evenly chosen draws, chains laid end to end: ``ability`` (draw, mode), each parameter (draw,)."""
+
+    ability: NDArray[np.float64]
+    parameters: dict[str, NDArray[np.float64]]
+
+
+def thinned(draws: Draws, number: int = DRAWS_USED) -> ThinnedDraws:
+    """About so many of the draws, evenly chosen."""
+    ability = draws.ability.reshape(-1, draws.ability.shape[-1])
+    every = max(1, len(ability) // number)
+    return ThinnedDraws(
+        ability[::every], {name: values.reshape(-1)[::every] for name, values in draws.parameters.items()}
+    )
 
 
 def answer_shares(table: ResponseTable, fit: Fit) -> tuple[tuple[PairShares, ...], ...]:
@@ -56,45 +79,66 @@ def _pairs(table: ResponseTable, fit: Fit, question: QuestionFit) -> tuple[PairS
             as_ij, as_ji = shown[i, j], shown[j, i]
             if not as_ij.any() and not as_ji.any():
                 continue
-            expected: tuple[float, ...] = ()
+            given = tuple(int(n) for n in as_ij + as_ji[::-1])
+            expected = None
             if question.ranked and question.draws is not None:
                 expected = _expected(question.draws, levels, i, j, int(as_ij.sum()), int(as_ji.sum()))
-            given = tuple(int(n) for n in as_ij + as_ji[::-1])
-            pairs.append(PairShares(modes[i], modes[j], given, expected))
+            if expected is None:
+                pairs.append(PairShares(modes[i], modes[j], given))
+                continue
+            low, high = hdi(expected, HDI_PROBABILITY)
+            mean = tuple(float(x) for x in expected.mean(axis=0))
+            pairs.append(
+                PairShares(modes[i], modes[j], given, mean, tuple(map(float, low)), tuple(map(float, high)))
+            )
     return tuple(pairs)
 
 
-def _expected(draws: Draws, levels: int, i: int, j: int, n_ij: int, n_ji: int) -> tuple[float, ...]:
-    """Posterior mean shares, averaged over people and over the orders in which the pair was shown.
+def _expected(draws: Draws, levels: int, i: int, j: int, n_ij: int, n_ji: int) -> NDArray[np.float64] | None:
+    """Draws of the shares, (draw, level), over people and over the orders in which the pair was shown.
 
     The deviations z of a person are ZeroSumNormal(1) over the modes, so z_i - z_j has variance 2
-    whatever the number of modes; the integral over it is Gauss-Hermite quadrature.
+    whatever the number of modes; the integral over it is Gauss-Hermite quadrature. None if the draws hold no
+    model of this scale.
     """
-    ability = draws.ability.reshape(-1, draws.ability.shape[-1])
-    every = max(1, len(ability) // _DRAWS_USED)
-    parameters = {name: values.reshape(-1)[::every, None] for name, values in draws.parameters.items()}
-    lead = (ability[:, i] - ability[:, j])[::every, None]
+    kept = thinned(draws)
+    parameters = {name: values[:, None] for name, values in kept.parameters.items()}
+    if not knows_scale(kept.parameters, levels):
+        return None
+    lead = (kept.ability[:, i] - kept.ability[:, j])[:, None]
     side = parameters.get("side_effect", np.zeros_like(lead))
     people = np.sqrt(2.0) * parameters.get("subject_sd", np.zeros_like(lead)) * _NODES
-    as_ij = _shares(lead + side + people, parameters, levels)
-    as_ji = _shares(-lead + side + people, parameters, levels)
-    if as_ij is None or as_ji is None:
-        return ()
+    as_ij = answer_probabilities(lead + side + people, parameters, levels)
+    as_ji = answer_probabilities(-lead + side + people, parameters, levels)
     both = (n_ij * as_ij + n_ji * as_ji[..., ::-1]) / (n_ij + n_ji)
-    weights = _WEIGHTS / _WEIGHTS.sum()
-    return tuple(float(share) for share in weights @ both.mean(axis=0))
+    return np.asarray(np.einsum("m,dml->dl", _WEIGHTS / _WEIGHTS.sum(), both))
 
 
-def _shares(
-    eta: NDArray[np.float64], parameters: dict[str, NDArray[np.float64]], levels: int
-) -> NDArray[np.float64] | None:
-    """Chance of each answer, shape (draw, node, level); None if the draws hold no model of this scale."""
+def knows_scale(parameters: Mapping[str, NDArray[np.float64]], levels: int) -> bool:
+    """False where the model was fitted to a shorter scale than the answers have (the gibbs engine)."""
+    if "log_nu" in parameters or "log_theta" in parameters:
+        return levels == 3
+    return sum(name.startswith("cut_") for name in parameters) == levels // 2 - (levels == 2)
+
+
+def answer_probabilities(
+    eta: NDArray[np.float64], parameters: Mapping[str, NDArray[np.float64]], levels: int
+) -> NDArray[np.float64]:
+    """Chance of each answer, from A much to B much, as the fitted model has it.
+
+    Parameters
+    ----------
+    eta : ndarray, shape (draw, ...)
+        Lead of A over B [logit].
+    parameters : mapping of str to ndarray
+        The draws' parameters, each of a shape that broadcasts against ``eta``.
+
+    Returns
+    -------
+    ndarray, shape (draw, ..., level)
+    """
     if "log_nu" in parameters:
         return np.exp(adjacent_log_probabilities(eta, parameters["log_nu"]))
-    cuts = [parameters[name] for name in ("cut_1", "cut_2") if name in parameters]
-    if not cuts and "log_theta" in parameters:
-        cuts = [parameters["log_theta"]]
-    if len(cuts) != levels // 2 - (levels == 2):
-        return None
-    stacked = np.stack(cuts, axis=-1) if cuts else np.empty((1, 1, 0))
+    cuts = [parameters[name] for name in ("cut_1", "cut_2", "log_theta") if name in parameters]
+    stacked = np.stack(cuts, axis=-1) if cuts else np.empty((*([1] * eta.ndim), 0))
     return np.exp(cumulative_log_probabilities(eta, stacked, levels))

@@ -38,7 +38,7 @@ class ExactPosterior:
     ----------
     ability_mean, ability_sd, worth_mean, worth_sd, p_best : ndarray, shape (3,)
     parameter_mean, parameter_sd : dict of str to float
-        ``side_effect``, ``cut_1``, ``cut_2``, ``log_nu`` or ``log_theta``: those the model has.
+        ``side_effect``, ``cut_1``, ``cut_2``, or ``log_nu``: those the model has.
     """
 
     ability_mean: FloatArray
@@ -148,7 +148,7 @@ def exact_dirichlet_posterior(counts: Counts, points: int = 301, theta_points: i
             if i < j and has_ties:
                 log_p[k] += tied * np.log(theta**2 - 1.0)
     values = np.log1p(np.exp(excess))[:, None] if has_ties else np.zeros((1, 0))
-    return _summary(ability, log_p, ["log_theta"] if has_ties else [], values)
+    return _summary(ability, log_p, ["cut_1"] if has_ties else [], values)
 
 
 def _summary(ability: FloatArray, log_p: FloatArray, names: list[str], values: FloatArray) -> ExactPosterior:

@@ -28,6 +28,8 @@ Progress = Callable[[int, int, str], None]
 
 LONGER = (2, 4)
 """How many times the draws are taken where the gate fails, before a question is not ranked."""
+MOST_MODES = 1000
+"""More modes than this are refused: every pair of them is a row of the report."""
 DIVERGENCES_WORTH_SAYING = 0.001
 """Share of the draws above which divergences are mentioned. Untuned."""
 
@@ -116,6 +118,8 @@ def _validate(table: ResponseTable, settings: FitSettings) -> None:
             raise InputError(f"{what}: {number!r} is fewer than {least}")
     if len(table.modes) < 2:
         raise InputError("a ranking needs at least two modes")
+    if len(table.modes) > MOST_MODES:
+        raise InputError(f"{len(table.modes)} modes are more than a report can rank; at most {MOST_MODES}")
     for question in table.questions:
         model_of(settings, question.levels, table.has_participants)
 
@@ -133,6 +137,11 @@ def _prepare(table: ResponseTable, question: QuestionScale, settings: FitSetting
     if is_gibbs and counts.levels == 5:
         used = counts.collapsed()
         warnings += ("The gibbs engine knows no strength of preference: A>>B was taken as A>B, B>>A as B>A.",)
+    if is_gibbs and not examination.refusal:
+        from analysis.engines.gibbs import IMPROPER, is_proper
+
+        if not is_proper(used):
+            examination = replace(examination, refusal=IMPROPER)
     model = model_of(settings, used.levels, table.has_participants)
     if is_gibbs:
         model = replace(model, hierarchical=False, side_effect=False)
@@ -250,6 +259,11 @@ def _about_the_whole(table: ResponseTable, settings: FitSettings) -> tuple[str, 
     elif settings.pooled or settings.engine == "gibbs":
         said.append(
             "Participants are pooled: their answers are taken as independent, so intervals are too narrow."
+        )
+    if settings.engine == "gibbs" and settings.prior_sd != FitSettings.prior_sd:
+        said.append(
+            f"The gibbs engine's prior is Dirichlet(1) on the worths: the prior sd of {settings.prior_sd:g} "
+            "is not used."
         )
     if settings.engine == "pymc":
         from analysis.engines.pymc_engine import compiler_note

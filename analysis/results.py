@@ -65,7 +65,7 @@ class Draws:
     worth : ndarray, shape (chain, draw, mode)
         ``softmax(ability)``: sums to 1 over the modes of a draw.
     parameters : mapping of str to ndarray, shape (chain, draw)
-        ``side_effect``, ``cut_1``, ``cut_2``, ``log_nu``, ``log_theta``, ``subject_sd``: those the model has.
+        ``side_effect``, ``cut_1``, ``cut_2``, ``log_nu``, ``subject_sd``: those the model has.
     diverging : ndarray of bool, shape (chain, draw)
     """
 

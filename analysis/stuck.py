@@ -7,13 +7,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
-from scipy.special import betainc, betaincinv, betaln, gammaincinv
+from scipy.special import betaincinv, betaln, gammaincinv, gammaln
 
 from analysis.results import HDI_PROBABILITY, Quantity
 from data.responses import StuckTable
 
 _RATES = (np.arange(600) + 0.5) / 600
 _CORRELATIONS = (np.arange(60) + 0.5) / 60
+_MEAN_PER_MINUTE = 1.0
+"""Mean of the Exponential prior on stuck comparisons a minute [1/min]. Untuned: with more, no task is
+left."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,12 @@ class StuckRate:
     exposure_min : float
         Time under the mode [min].
     per_minute_mean, per_minute_hdi_low, per_minute_hdi_high : float
-        Comparisons stuck per minute of exposure [1/min], flat prior; nan without exposure.
+        Comparisons stuck per minute of exposure [1/min], flat prior; nan without exposure. Minutes are taken
+        as independent.
+    per_minute_between : Quantity or None
+        The same over a population of participants: each has an own rate, Gamma with mean ``m`` and squared
+        coefficient of variation ``r / (1 - r)``, events are Poisson; m ~ Exponential with a mean of 1 a
+        minute (untuned), r uniform on 0..1. None without exposure.
     """
 
     mode: str
@@ -48,24 +56,7 @@ class StuckRate:
     per_minute_mean: float
     per_minute_hdi_low: float
     per_minute_hdi_high: float
-
-
-@dataclass(frozen=True)
-class StuckContrast:
-    """Two modes' stuck rates.
-
-    Attributes
-    ----------
-    p_i_above_j : float
-        Posterior probability that mode i's rate is higher, under independent Beta posteriors.
-    p_fisher : float
-        Two-sided exact test of equal rates (Fisher), comparisons taken as independent.
-    """
-
-    mode_i: str
-    mode_j: str
-    p_i_above_j: float
-    p_fisher: float
+    per_minute_between: Quantity | None = None
 
 
 def stuck_rates(table: StuckTable, modes: tuple[str, ...] | None = None) -> tuple[StuckRate, ...]:
@@ -73,23 +64,6 @@ def stuck_rates(table: StuckTable, modes: tuple[str, ...] | None = None) -> tupl
     rows = table.rows
     return tuple(
         _rate(mode, rows[rows["mode"] == mode]) for mode in modes or tuple(sorted(rows["mode"].unique()))
-    )
-
-
-def stuck_contrasts(rates: tuple[StuckRate, ...]) -> tuple[StuckContrast, ...]:
-    """Every pair of modes that both took part in a comparison."""
-    from scipy.stats import fisher_exact
-
-    known = [rate for rate in rates if rate.comparisons]
-    return tuple(
-        StuckContrast(
-            i.mode,
-            j.mode,
-            _p_above(i, j),
-            float(fisher_exact([[i.stuck, i.comparisons - i.stuck], [j.stuck, j.comparisons - j.stuck]])[1]),
-        )
-        for n, i in enumerate(known)
-        for j in known[n + 1 :]
     )
 
 
@@ -103,7 +77,16 @@ def _rate(mode: str, rows: pd.DataFrame) -> StuckRate:
         ends = _shortest(lambda p: gammaincinv(a, p) / minutes, falls=k == 0, rises=False)
         per_minute = (a / minutes, *ends)
     return StuckRate(
-        mode, n, k, a / (a + b), low, high, _between_participants(mode, rows), minutes, *per_minute
+        mode,
+        n,
+        k,
+        a / (a + b),
+        low,
+        high,
+        _between_participants(mode, rows),
+        minutes,
+        *per_minute,
+        _between_per_minute(mode, rows) if minutes > 0 else None,
     )
 
 
@@ -137,21 +120,41 @@ def _between_participants(mode: str, rows: pd.DataFrame) -> Quantity:
     weight = np.exp(log_p - log_p.max()).sum(axis=1)
     weight /= weight.sum()
     mean = float(weight @ _RATES)
-    low, high = _grid_hdi(weight)
+    low, high = _grid_hdi(weight, 1.0)
     return Quantity(f"stuck_rate_{mode}", mean, float(np.sqrt(weight @ (_RATES - mean) ** 2)), low, high)
 
 
-def _grid_hdi(weight: NDArray[np.float64]) -> tuple[float, float]:
-    """The shortest interval on the grid of rates with 94 % of the weight."""
-    edges = np.linspace(0.0, 1.0, len(weight) + 1)
+def _between_per_minute(mode: str, rows: pd.DataFrame) -> Quantity:
+    """Posterior of the mean rate a minute over participants, by summation over a grid of mean and spread.
+
+    A person's events are then negative binomial: a Gamma with mean m and squared coefficient of variation c
+    has shape 1/c and rate 1/(c m).
+    """
+    by_person = rows.groupby("participant").agg(k=("stuck", "sum"), s=("exposure_s", "sum"))
+    events, minutes = by_person["k"].to_numpy(float), by_person["s"].to_numpy(float) / 60.0
+    # Up to where no posterior of so few events in so much time reaches.
+    most = min(12.0 * _MEAN_PER_MINUTE, 15.0 * (events.sum() + 1.0) / minutes.sum())
+    m = (_RATES * most)[:, None]
+    c = (_CORRELATIONS / (1.0 - _CORRELATIONS))[None, :]
+    log_p = -m / _MEAN_PER_MINUTE + np.zeros_like(c)
+    for k, t in zip(events, minutes, strict=True):
+        log_p = (
+            log_p + gammaln(k + 1 / c) - gammaln(1 / c) + k * np.log(c) - (k + 1 / c) * np.log1p(c * m * t)
+        )
+        if k:
+            log_p = log_p + k * np.log(m * t)
+    weight = np.exp(log_p - log_p.max()).sum(axis=1)
+    weight /= weight.sum()
+    rates = _RATES * most
+    mean = float(weight @ rates)
+    low, high = _grid_hdi(weight, most)
+    return Quantity(f"stuck_per_minute_{mode}", mean, float(np.sqrt(weight @ (rates - mean) ** 2)), low, high)
+
+
+def _grid_hdi(weight: NDArray[np.float64], most: float) -> tuple[float, float]:
+    """The shortest interval on the grid of rates from 0 to ``most`` with 94 % of the weight."""
+    edges = np.linspace(0.0, most, len(weight) + 1)
     mass = np.concatenate([[0.0], np.cumsum(weight)])
     ends = np.interp(mass + HDI_PROBABILITY, mass, edges, right=np.nan)
     first = int(np.nanargmin(ends - edges))
     return float(edges[first]), float(ends[first])
-
-
-def _p_above(i: StuckRate, j: StuckRate) -> float:
-    """P(rate i > rate j): the mean of j's distribution function at equally likely rates of i."""
-    probabilities = (np.arange(4000) + 0.5) / 4000
-    at = betaincinv(1.0 + i.stuck, 1.0 + i.comparisons - i.stuck, probabilities)
-    return float(betainc(1.0 + j.stuck, 1.0 + j.comparisons - j.stuck, at).mean())

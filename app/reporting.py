@@ -1,6 +1,7 @@
 """From responses, stored or collected, to a fitted and written report."""
 
 import sys
+from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -9,14 +10,15 @@ from rich.console import Console
 from analysis.console_ranking import print_ranking
 from analysis.fit import fit
 from analysis.lag import LagExclusion, LagLimits, lag_changes, without_laggy
+from analysis.refits import Refits, refits
 from analysis.report import MARKER, ReportResult, write_report
 from analysis.results import Engine, Fit, FitSettings, Link
-from app.cli.progress import progress
+from app.cli.progress import Report, progress
 from app.studies import open_study
 from data.errors import InputError
 from data.locations import check_folder, default_store
 from data.response_csv import read_response_csv
-from data.responses import LagTable, ResponseTable, StuckTable
+from data.responses import LagTable, MetricTable, ResponseTable, StuckTable
 from data.store import Store
 from data.study import Study
 
@@ -37,6 +39,7 @@ class Request:
     link: Link = "cumulative"
     seed: int = 2017
     lag_limits: LagLimits = field(default_factory=LagLimits)
+    full: bool = False
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,7 @@ class _Evidence:
     study: Study | None
     lag: LagTable | None = None
     excluded: LagExclusion | None = None
+    metrics: MetricTable | None = None
 
 
 def make_report(request: Request) -> ReportResult:
@@ -77,6 +81,7 @@ def make_report(request: Request) -> ReportResult:
     excluded = evidence.excluded
     if excluded is not None:
         excluded = replace(excluded, changes=lag_changes(_fit_of_all(everything, excluded, fitted), fitted))
+    refitted = _refitted(evidence, fitted) if request.full else None
     with progress("Report") as report:
         written = write_report(
             evidence.table,
@@ -87,6 +92,8 @@ def make_report(request: Request) -> ReportResult:
             progress=report,
             lag=evidence.lag,
             excluded=excluded,
+            metrics=evidence.metrics,
+            refitted=refitted,
         )
     for warning in fitted.warnings:
         print(f"note: {warning}", file=sys.stderr)
@@ -95,6 +102,23 @@ def make_report(request: Request) -> ReportResult:
         print(f"note: {left} of {total} comparisons are left out because of lag", file=sys.stderr)
     print_ranking(fitted, Console(), is_simulated=evidence.table.is_simulated)
     return written
+
+
+def _refitted(evidence: _Evidence, fitted: Fit) -> Refits:
+    """What a full report compares, with a progress bar a stage."""
+    with ExitStack() as stages:
+
+        def stage(name: str) -> Report:
+            stages.close()
+            return stages.enter_context(progress(name))
+
+        return refits(
+            evidence.table,
+            fitted,
+            lag=evidence.lag if evidence.excluded is None else None,
+            metrics=evidence.metrics,
+            progress=stage,
+        )
 
 
 def _fit_of_all(everything: _Evidence, excluded: LagExclusion, fitted: Fit) -> Fit:
@@ -113,7 +137,14 @@ def _without_laggy(everything: _Evidence, limits: LagLimits) -> _Evidence:
             "--max-latency-ms and --max-skipped are about trials that people guided, and none is known here"
         )
     kept = without_laggy(everything.table, everything.stuck, everything.lag, limits)
-    return replace(everything, table=kept.table, stuck=kept.stuck, excluded=kept.excluded)
+    metrics = everything.metrics
+    return replace(
+        everything,
+        table=kept.table,
+        stuck=kept.stuck,
+        excluded=kept.excluded,
+        metrics=None if metrics is None else metrics.without(kept.excluded.comparisons),
+    )
 
 
 def _read(request: Request) -> _Evidence:
@@ -131,4 +162,5 @@ def _read(request: Request) -> _Evidence:
             store.stuck_table(stored, include_simulated=request.include_simulated),
             stored.study,
             store.lag_table(stored, include_simulated=request.include_simulated),
+            metrics=store.metric_table(stored, include_simulated=request.include_simulated),
         )

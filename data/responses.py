@@ -1,8 +1,8 @@
 """Responses in the shape the analysis takes, whether they come from a store or from a CSV."""
 
 import hashlib
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import pandas as pd
@@ -106,3 +106,26 @@ class LagTable:
     """
 
     rows: pd.DataFrame
+
+
+@dataclass(frozen=True)
+class MetricTable:
+    """Objective metrics of the laps behind the answers.
+
+    Attributes
+    ----------
+    rows : DataFrame
+        One row per comparison and mode in it with any lap that was finished or ended stuck: ``participant``,
+        ``comparison``, ``mode`` (str), then a float column a metric, units in the names: the mean over those
+        laps, NaN where none has it.
+    background : mapping of str to mapping of str to str
+        By participant, the answers to the study's questions about the person.
+    """
+
+    rows: pd.DataFrame
+    background: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    def without(self, comparisons: Collection[str]) -> Self:
+        """The same without some comparisons."""
+        kept = ~self.rows["comparison"].isin(list(comparisons))
+        return replace(self, rows=self.rows[kept].reset_index(drop=True))

@@ -17,6 +17,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import linprog
+from scipy.sparse import coo_array
 
 from analysis.counts import Counts
 from analysis.model import Problem
@@ -24,6 +26,42 @@ from analysis.results import Draws, FitSettings
 
 SHAPE = 1.0
 """Shape of the Gamma prior on skills: 1 makes worths Dirichlet(1), flat on the simplex."""
+
+
+IMPROPER = (
+    "Nearly every answer is a tie, and the gibbs engine's flat prior on ties has then no proper posterior: "
+    "the engines fast and pymc have one."
+)
+"""Why a question is not ranked by this engine."""
+
+
+def is_proper(counts: Counts) -> bool:
+    """True if the posterior can be normalised, theta's flat prior being improper.
+
+    As theta grows, let each worth fall as ``theta^-d``, d >= 0. Such worths have a mass of
+    ``theta^-sum(d)``, a win of i over j the probability ``theta^-max(0, 1 + d_i - d_j)`` and a tie
+    ``theta^-max(0, |d_i - d_j| - 1)``. The integral over theta is finite if the smallest total exponent over
+    all d, found by a linear program, is above 1.
+    """
+    wins, ties = counts.wins(), np.triu(counts.ties())
+    if counts.levels == 2:
+        return True
+    n = len(counts.modes)
+    winner, loser = np.nonzero(wins)
+    one, other = np.nonzero(ties)
+    low, high = np.concatenate([winner, one, other]), np.concatenate([loser, other, one])
+    # A row says d_low - d_high - excess <= bound; the two rows of a tie share their excess.
+    n_wins, n_ties = len(winner), len(one)
+    rows = np.arange(n_wins + 2 * n_ties)
+    excess = n + np.concatenate([np.arange(n_wins), n_wins + np.tile(np.arange(n_ties), 2)])
+    signs = np.repeat([1.0, -1.0, -1.0], len(rows))
+    places = (np.tile(rows, 3), np.concatenate([low, high, excess]))
+    limits = coo_array((signs, places), shape=(len(rows), n + n_wins + n_ties)).tocsr()
+    bound = np.concatenate([-np.ones(n_wins), np.ones(2 * n_ties)])
+    cost = np.concatenate([np.ones(n), wins[winner, loser], ties[one, other]])
+    # More than two answers of a kind decide no more than two; large costs would only blur the solver's zero.
+    least = linprog(np.minimum(cost, 2.0), A_ub=limits, b_ub=bound) if len(rows) else None
+    return least is not None and least.fun > 1.0 + 1e-6
 
 
 def sample(
@@ -50,7 +88,7 @@ def _chains(counts: Counts, settings: FitSettings, rng: np.random.Generator) -> 
     skill = rng.gamma(SHAPE, size=(n_chains, n_modes))
     theta = np.full(n_chains, 1.5 if has_ties else 1.0)
     worth = np.empty((n_chains, settings.draws, n_modes))
-    log_theta = np.empty((n_chains, settings.draws))
+    cut = np.empty((n_chains, settings.draws))
     for draw in range(-settings.tune, settings.draws):
         latent = rng.gamma(beaten, size=(n_chains, len(beaten)))
         latent /= skill[:, winner] + theta[:, None] * skill[:, loser]
@@ -66,10 +104,11 @@ def _chains(counts: Counts, settings: FitSettings, rng: np.random.Generator) -> 
         skill = share * rng.gamma(SHAPE * n_modes, size=(n_chains, 1))
         if draw >= 0:
             worth[:, draw] = share
-            log_theta[:, draw] = np.log(theta)
+            cut[:, draw] = np.log(theta)
     ability = np.log(worth)
     ability -= ability.mean(axis=2, keepdims=True)
-    parameters = {"log_theta": log_theta} if has_ties else {}
+    # Rao-Kupper's log theta is the first cut-point of the cumulative model (`analysis.model`).
+    parameters = {"cut_1": cut} if has_ties else {}
     return Draws(ability, worth, parameters, np.zeros(worth.shape[:2], dtype=bool))
 
 

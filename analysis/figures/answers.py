@@ -1,4 +1,4 @@
-"""Figure 4: the answers people gave, pair by pair, beside what the model expects."""
+"""The answers people gave, pair by pair, beside what the model expects."""
 
 import math
 from collections.abc import Sequence
@@ -70,7 +70,7 @@ def draw_answers(
                     _draw_question(figure, questions[k], pairs, modes, c * (width + 36), top, width, reach)
                 top += heights[r]
             _draw_key(figure, top + 16, {questions[k].levels for k in names}, shown)
-            name = "figure_4_answers" if len(parts) == 1 else f"figure_4_answers_{number + 1}"
+            name = "answers" if len(parts) == 1 else f"answers_{number + 1}"
             alt = _alt([questions[k] for k in names], [shown[k] for k in names])
             drawings.append(finish(figure, name, alt, tag))
         return tuple(drawings)

@@ -1,4 +1,4 @@
-"""Figure 7: whether the chains agree, drawn as the ranks of their draws."""
+"""Whether the chains agree, drawn as the ranks of their draws."""
 
 from collections.abc import Sequence
 
@@ -71,7 +71,7 @@ def draw_chains(questions: Sequence[QuestionFit], tag: str = "") -> Drawing | No
         alt = "Rank histograms by chain; flat is good. " + " ".join(
             f"{one_line(q.question.name)}: R-hat {q.rhat_max:.3f}, ESS {q.ess_min:.0f}." for q in sampled
         )
-        return finish(figure, "figure_7_chains", alt, tag)
+        return finish(figure, "chains", alt, tag)
 
 
 def _slowest(question: QuestionFit) -> tuple[str, np.ndarray]:

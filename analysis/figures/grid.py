@@ -1,4 +1,4 @@
-"""A square of shaded cells for each question: the shape that figures 2 and 3 share."""
+"""A square of shaded cells for each question: what pairs and ranks are drawn with."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
 
-_NUMBERED_UP_TO = 8
+NUMBERED_UP_TO = 8
+"""With more modes cells are shaded and carry no numbers."""
 _GAP_PX = 26
 _NOTE_PT = 7.4
 
@@ -69,11 +70,13 @@ def draw_grids(
     column_title: str,
     middle: str,
     tag: str,
+    darkest: float = 1.0,
 ) -> tuple[Drawing, ...]:
     """One grid a question, as many beside each other as are legible, in as many drawings as it takes.
 
     ``middle`` is the colour of an even chance: light where that means ignorance, darker where it is much.
-    A question without a grid (``grid_of`` gives None) is named and said to be not ranked.
+    ``darkest`` is the chance that is drawn darkest: where no cell comes near 1, a lower one lets differences
+    show. A question without a grid (``grid_of`` gives None) is named and said to be not ranked.
     """
     with house_style():
         size = len(modes)
@@ -109,6 +112,7 @@ def draw_grids(
                     text_of,
                     column_title,
                     middle,
+                    darkest,
                 )
             drawings.append(finish(figure, name if parts == 1 else f"{name}_{part + 1}", alt, tag))
         return tuple(drawings)
@@ -119,7 +123,7 @@ def _label_room(modes: tuple[str, ...]) -> float:
 
 
 def _cell_px(size: int, label_px: float, grids: Sequence[Grid | None]) -> float:
-    if size <= _NUMBERED_UP_TO:
+    if size <= NUMBERED_UP_TO:
         notes = {note for grid in grids if grid for row in grid.notes for note in row}
         wanted = 8 + max((width_px(note, _NOTE_PT) for note in notes), default=0.0)
         return min(max(56.0 if size <= 3 else 48.0, wanted), (WIDTH_PX - label_px) / size)
@@ -127,7 +131,7 @@ def _cell_px(size: int, label_px: float, grids: Sequence[Grid | None]) -> float:
 
 
 def _height_ratio(size: int) -> float:
-    return 0.68 if size <= _NUMBERED_UP_TO else 1.0
+    return 0.68 if size <= NUMBERED_UP_TO else 1.0
 
 
 def _draw_panel(
@@ -144,6 +148,7 @@ def _draw_panel(
     text_of: Callable[[float], str],
     column_title: str,
     middle: str,
+    darkest: float,
 ) -> None:
     size = len(modes)
     write_heading(figure, left, top + 16, question.question, label_px + cell * size)
@@ -162,10 +167,10 @@ def _draw_panel(
         np.ma.masked_invalid(grid.shares),
         cmap=_shades(middle),
         vmin=0,
-        vmax=1,
+        vmax=darkest,
         edgecolors=SURFACE,
-        linewidth=1.5 if size <= _NUMBERED_UP_TO else 0.2,
-        rasterized=size > _NUMBERED_UP_TO,
+        linewidth=1.5 if size <= NUMBERED_UP_TO else 0.2,
+        rasterized=size > NUMBERED_UP_TO,
     )
     axes.add_patch(_frame(size))
     small = 9.0 if cell >= 13 else 0.6 * cell
@@ -202,7 +207,7 @@ def _draw_panel(
             )
     if column_title:
         write_text(figure, left + label_px - 8, top + head - 6, column_title, ha="right", fontsize=8.4)
-    if size <= _NUMBERED_UP_TO:
+    if size <= NUMBERED_UP_TO:
         _write_cells(figure, grid, left + label_px, top + head, cell, height, text_of)
 
 

@@ -1,4 +1,4 @@
-"""Figure 2: how likely each mode ranks above each other one, and on how many answers that rests."""
+"""How likely each mode ranks above each other one, and on how many answers that rests."""
 
 from collections.abc import Sequence
 
@@ -40,7 +40,7 @@ def draw_pairwise(
         questions,
         modes,
         grid_of,
-        name="figure_2_pairwise",
+        name="pairwise",
         alt=_alt(questions),
         text_of=lambda share: f"{percent(share)}",
         column_title="",

@@ -1,4 +1,4 @@
-"""Figure 6: what else the model learnt: side effect, cut-points and how much people differ."""
+"""What else the model learnt: side effect, cut-points and how much people differ."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -68,7 +68,7 @@ def draw_parameters(questions: Sequence[QuestionFit], tag: str = "") -> Drawing 
                 for quantity in question.parameters:
                     if quantity.name in names:
                         _draw_quantity(axes, row + 0.5, quantity)
-        return finish(figure, "figure_6_parameters", _alt(shown), tag)
+        return finish(figure, "parameters", _alt(shown), tag)
 
 
 def _draw_quantity(axes: "Axes", y: float, quantity: Quantity) -> None:

@@ -1,10 +1,10 @@
-"""Figure 3: which rank each mode may hold."""
+"""Which rank each mode may hold."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.figures.grid import Grid, draw_grids
+from analysis.figures.grid import NUMBERED_UP_TO, Grid, draw_grids
 from analysis.figures.labels import one_line, percent
 from analysis.figures.style import Drawing
 from analysis.results import QuestionFit
@@ -20,7 +20,7 @@ def draw_ranks(
         if not question.ranked:
             return None
         shown = list(question.modes)
-        if len(modes) > 8:
+        if len(modes) > NUMBERED_UP_TO:
             shown.sort(key=lambda m: m.rank_mean)
         shares = np.array([mode.rank_probabilities for mode in shown], dtype=float)
         return Grid(shares, tuple(mode.mode for mode in shown), ranks, ())
@@ -29,13 +29,19 @@ def draw_ranks(
         questions,
         modes,
         grid_of,
-        name="figure_3_ranks",
+        name="ranks",
         alt=_alt(questions),
         text_of=percent,
         column_title="rank",
         middle="#BDCAD1",
         tag=tag,
+        darkest=highest_chance(questions) if len(modes) > NUMBERED_UP_TO else 1.0,
     )
+
+
+def highest_chance(questions: Sequence[QuestionFit]) -> float:
+    """The highest chance of any rank: with many modes, none comes near 1."""
+    return max((p for q in questions for m in q.modes for p in m.rank_probabilities), default=1.0)
 
 
 def _alt(questions: Sequence[QuestionFit]) -> str:

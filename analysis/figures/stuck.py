@@ -1,4 +1,4 @@
-"""Figure 5: how often the robot got stuck under each mode."""
+"""How often the robot got stuck under each mode."""
 
 from collections.abc import Sequence
 
@@ -47,4 +47,4 @@ def draw_stuck(rates: Sequence[StuckRate], tag: str = "") -> Drawing:
             write_text(figure, left - 12, y, fitted(name, left - 12), ha="right", color=INK)
             write_text(figure, WIDTH_PX, y, f"{rate.stuck} / {rate.comparisons}", ha="right", color=INK_2)
         said = "; ".join(f"{one_line(r.mode)} {r.stuck} of {r.comparisons}" for r in rates)
-        return finish(figure, "figure_5_stuck", f"Comparisons with the robot stuck: {said}.", tag)
+        return finish(figure, "stuck", f"Comparisons with the robot stuck: {said}.", tag)

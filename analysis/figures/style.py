@@ -43,7 +43,7 @@ class Drawing:
     Attributes
     ----------
     name : str
-        Stem of its files, e.g. ``figure_1_worth``.
+        Stem of its files, e.g. ``worth``; the report puts its number before it.
     alt : str
         What someone who cannot see it must know.
     svg : str

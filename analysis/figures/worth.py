@@ -1,4 +1,4 @@
-"""Figure 1: the worth of every mode on every question, with its uncertainty."""
+"""The worth of every mode on every question, with its uncertainty."""
 
 import math
 from collections.abc import Sequence
@@ -103,7 +103,7 @@ def _columns(questions: Sequence[QuestionFit], modes: tuple[str, ...], tag: str)
         for row in range(math.ceil(len(shown) / per_row)):
             in_row = shown[row * per_row : (row + 1) * per_row]
             _draw_row_of_columns(figure, in_row, modes, row * row_height, group, top, step)
-        name = "figure_1_worth" if parts == 1 else f"figure_1_worth_{part + 1}"
+        name = "worth" if parts == 1 else f"worth_{part + 1}"
         drawings.append(finish(figure, name, _alt(shown), tag))
     return tuple(drawings)
 
@@ -181,7 +181,7 @@ def _rows(questions: Sequence[QuestionFit], modes: tuple[str, ...], tag: str) ->
         figure = new_figure(height * len(shown))
         for k, question in enumerate(shown):
             _draw_panel_of_rows(figure, question, modes, k * height, pitch, top, step)
-        name = "figure_1_worth" if len(starts) == 1 else f"figure_1_worth_{part + 1}"
+        name = "worth" if len(starts) == 1 else f"worth_{part + 1}"
         drawings.append(finish(figure, name, _alt(shown), tag))
     return tuple(drawings)
 

@@ -26,8 +26,9 @@ UNEQUAL_SKIPPED_PERCENT = 1.0
 _TRIALS = {
     "observed": "Participants watched a simulated robot. A real arm in the hand may be judged differently.",
     "guided": (
-        "Participants guided a simulated robot in the browser: they saw how it moved, but felt no force. A "
-        "real arm in the hand may be judged differently."
+        "Participants guided a simulated robot in the browser: they saw how it moved, but felt no force. "
+        "Guiding "
+        "with a mouse is not force contact, and a real arm in the hand may be judged differently."
     ),
     "external": (
         "Participants used a robot in the lab. An operator loaded each method and confirmed it: that it was "
@@ -51,6 +52,7 @@ def cautions(
         *_about_the_source(table, study),
         *unequal_delays(quality.delays),
         *_about_the_number(fit),
+        *_about_the_unanswered(fit, study),
         *_about_the_questions(fit),
         *fit.warnings,
         *_about_people(found),
@@ -62,6 +64,12 @@ def cautions(
     return tuple(dict.fromkeys(said))
 
 
+def unanswered(fit: Fit, study: Study | None) -> tuple[str, ...]:
+    """Questions of the study that nobody answered, in its order."""
+    asked = {q.question.name for q in fit.questions}
+    return tuple(q.name for q in study.questions if q.name not in asked) if study is not None else ()
+
+
 def _about_the_source(table: ResponseTable, study: Study | None) -> list[str]:
     if table.is_simulated:
         sources = table.rows.groupby("source")["count"].sum()
@@ -69,7 +77,8 @@ def _about_the_source(table: ResponseTable, study: Study | None) -> list[str]:
         if simulated < total:
             return [
                 f"{simulated:,} of {total:,} answers were made by simulated participants. "
-                "They are mixed with answers of people here: don't quote this as a result about people."
+                "They are mixed with answers of people here: don't quote this as a result about people.",
+                *([_TRIALS[study.protocol.trial_source]] if study is not None else []),
             ]
         return [
             "All answers were made by simulated participants. They show what the method does, not what "
@@ -86,6 +95,15 @@ def _about_the_number(fit: Fit) -> list[str]:
             "“elbowroom power” tells how many are needed."
         ]
     return []
+
+
+def _about_the_unanswered(fit: Fit, study: Study | None) -> list[str]:
+    names = [isolated(name) for name in unanswered(fit, study)]
+    if not names:
+        return []
+    return [
+        f"Nobody answered {listed(names)}: there is no ranking for {'it' if len(names) == 1 else 'them'}."
+    ]
 
 
 def _about_the_questions(fit: Fit) -> list[str]:

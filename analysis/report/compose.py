@@ -1,25 +1,37 @@
 """What the report says and draws, section by section."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from analysis.answer_shares import answer_shares
+from analysis.closer_look import CloserLook
 from analysis.data_quality import DataQuality
 from analysis.figures.answers import MOST_PAIRS, draw_answers
 from analysis.figures.chains import draw_chains
 from analysis.figures.labels import isolated, one_line, percent_in_words
 from analysis.figures.pairwise import draw_pairwise
 from analysis.figures.parameters import draw_parameters
-from analysis.figures.ranks import draw_ranks
+from analysis.figures.ranks import draw_ranks, highest_chance
 from analysis.figures.stuck import draw_stuck
 from analysis.figures.worth import draw_worth
+from analysis.refits import Refits
 from analysis.report import page as pages
+from analysis.report.closer import (
+    agreement_section,
+    consistency_section,
+    equivalence_section,
+    predictive_section,
+    strength_section,
+)
 from analysis.report.findings import findings, lead, listed
 from analysis.report.methods import methods, references
 from analysis.report.page import Page, Section
+from analysis.report.physics import physics_section
 from analysis.report.quality import checks_section, delay_section, exclusion_section
+from analysis.report.refitted import refit_sections
 from analysis.report.summary import known_comparisons
 from analysis.results import Fit
-from analysis.stuck import StuckRate, stuck_contrasts
+from analysis.stuck import StuckRate
+from analysis.stuck_contrasts import StuckContrast
 from data.responses import ResponseTable
 from data.study import Study
 
@@ -36,8 +48,11 @@ def simulated_tag(table: ResponseTable) -> str:
 def compose(
     table: ResponseTable,
     fit: Fit,
+    look: CloserLook,
     rates: Sequence[StuckRate],
+    contrasts: Sequence[StuckContrast],
     quality: DataQuality,
+    refitted: Refits | None,
     study: Study | None,
     cautions: Sequence[str],
     versions: dict[str, str],
@@ -45,33 +60,58 @@ def compose(
     """Everything the page prints, drawings included."""
     tag = simulated_tag(table)
     found = findings(fit)
-    sections = [
-        _pairwise(fit, tag),
-        _ranks(fit, tag),
-        _answers(table, fit, tag),
-        _stuck(rates, tag),
-        delay_section(quality.delays),
-        exclusion_section(quality.excluded),
-        checks_section(quality.checks),
-        _parameters(fit, tag),
-        _diagnostics(fit, tag),
-    ]
+    worth, *sections = _numbered(
+        [
+            _worth(fit, tag),
+            _pairwise(fit, tag),
+            equivalence_section(look, fit, tag),
+            _ranks(fit, tag),
+            _answers(fit, look, tag),
+            strength_section(look),
+            agreement_section(look, fit, tag),
+            consistency_section(look),
+            _stuck(rates, contrasts, tag),
+            pages.contrasts_section(contrasts),
+            physics_section(look, fit, tag, table.is_simulated),
+            delay_section(quality.delays),
+            exclusion_section(quality.excluded),
+            checks_section(quality.checks),
+            _parameters(fit, tag),
+            predictive_section(look, fit, tag),
+            _diagnostics(fit, tag),
+            *refit_sections(refitted),
+        ]
+    )
     return Page(
         title=_title(table, study),
         subtitle=_subtitle(table, fit, study),
         tag=tag,
         lead=lead(found, rates, table.is_simulated),
-        worth=_worth(fit, tag),
+        worth=worth,
         findings=found,
         unranked=tuple(q for q in fit.questions if not q.ranked),
         cautions=tuple(cautions),
-        sections=tuple(s for s in sections if s is not None),
-        methods=methods(fit),
-        references=references(fit),
+        sections=tuple(sections),
+        methods=methods(fit, look, rates, refitted),
+        references=references(fit, look, rates, refitted),
         provenance=_provenance(table, fit, study, versions),
         footer_left=f"Elbowroom, engine {fit.settings.engine}, Bradley-Terry, seed {fit.settings.seed}",
         footer_right=f"data {table.sha256[:4]} {table.sha256[4:8]}",
     )
+
+
+def _numbered(sections: Sequence[Section | None]) -> list[Section]:
+    """The sections that there are, their figures counted from 1, and the drawings' names with the number."""
+    kept, number = [], 0
+    for section in sections:
+        if section is None:
+            continue
+        if section.drawings:
+            number += 1
+            named = tuple(replace(d, name=f"figure_{number}_{d.name}") for d in section.drawings)
+            section = replace(section, drawings=named, caption_start=f"Figure {number}.")
+        kept.append(section)
+    return kept
 
 
 def _title(table: ResponseTable, study: Study | None) -> str:
@@ -115,9 +155,7 @@ def _worth(fit: Fit, tag: str) -> Section:
         name, short = one_line(question.name), one_line(question.short)
         caption += f" In {name} a high worth means “{short}”, which isn't better."
     drawings = draw_worth(fit.questions, fit.modes, tag)
-    return Section(
-        "Preference by question", drawings, "Figure 1.", caption, pages.worth_table(fit), "appended"
-    )
+    return Section("Preference by question", drawings, "", caption, pages.worth_table(fit), "appended")
 
 
 def _pairwise(fit: Fit, tag: str) -> Section:
@@ -125,19 +163,22 @@ def _pairwise(fit: Fit, tag: str) -> Section:
     if len(fit.modes) <= _ONE_PAGE_OF_MODES:
         caption += " Below it the answers behind it: for the row's mode, ties, for the column's."
     drawings = draw_pairwise(fit.questions, fit.modes, tag)
-    return Section("Pair by pair", drawings, "Figure 2.", caption, pages.pairwise_table(fit))
+    return Section("Pair by pair", drawings, "", caption, pages.pairwise_table(fit))
 
 
 def _ranks(fit: Fit, tag: str) -> Section:
     caption = "Chance, in per cent, that a mode (row) holds a rank (column); rank 1 is the highest worth."
     if len(fit.modes) > _ONE_PAGE_OF_MODES:
-        caption += " Modes are sorted by their mean rank; darker is more likely."
+        caption += (
+            " Modes are sorted by their mean rank; darker is more likely, the darkest "
+            f"{percent_in_words(highest_chance(fit.questions))}."
+        )
     drawings = draw_ranks(fit.questions, fit.modes, tag)
-    return Section("Which rank a mode may hold", drawings, "Figure 3.", caption, pages.ranks_table(fit))
+    return Section("Which rank a mode may hold", drawings, "", caption, pages.ranks_table(fit))
 
 
-def _answers(table: ResponseTable, fit: Fit, tag: str) -> Section:
-    shares = answer_shares(table, fit)
+def _answers(fit: Fit, look: CloserLook, tag: str) -> Section:
+    shares = look.shares
     caption = (
         "Answers to each pair, as shares to both sides of the middle: to the left those for the mode on the "
         "left, to the right those for the other. The number is how many answers there are."
@@ -150,19 +191,17 @@ def _answers(table: ResponseTable, fit: Fit, tag: str) -> Section:
     if any(len(pairs) > MOST_PAIRS for pairs in shares):
         caption += f" Of many pairs the {MOST_PAIRS} most compared are shown."
     drawings = draw_answers([q.question for q in fit.questions], shares, fit.modes, tag)
-    return Section(
-        "The answers themselves", drawings, "Figure 4.", caption, pages.answers_table(fit, shares), "here"
-    )
+    return Section("The answers themselves", drawings, "", caption, pages.answers_table(fit, shares), "here")
 
 
-def _stuck(rates: Sequence[StuckRate], tag: str) -> Section | None:
+def _stuck(rates: Sequence[StuckRate], contrasts: Sequence[StuckContrast], tag: str) -> Section | None:
     if not rates:
         return None
     caption = (
         "Share of a mode's comparisons in which the robot got stuck at least once under that mode, with 94 % "
         "intervals (uniform prior)."
     )
-    surest = sorted(stuck_contrasts(tuple(rates)), key=lambda c: -abs(c.p_i_above_j - 0.5))
+    surest = sorted(contrasts, key=lambda c: -abs(c.p_i_above_j - 0.5))
     for contrast in surest[:2]:
         high, low, chance = contrast.mode_i, contrast.mode_j, contrast.p_i_above_j
         if chance < 0.5:
@@ -171,11 +210,15 @@ def _stuck(rates: Sequence[StuckRate], tag: str) -> Section | None:
             f" The chance that {isolated(high)} has a higher rate than {isolated(low)} is "
             f"{percent_in_words(chance)}."
         )
-    caption += " “Over people” allows each person a rate of their own. Rates hold for this task and no other."
+    caption += (
+        " In the numbers “over people” allows each person a rate of their own, as events cluster in "
+        "people; rates "
+        "per minute are of exposure to the mode. Rates hold for this task and no other."
+    )
     return Section(
         "How often the robot got stuck",
         (draw_stuck(rates, tag),),
-        "Figure 5.",
+        "",
         caption,
         pages.stuck_table(rates),
         "here",
@@ -207,7 +250,7 @@ def _parameters(fit: Fit, tag: str) -> Section | None:
     return Section(
         "What else the model learnt",
         (drawing,),
-        "Figure 6.",
+        "",
         caption,
         pages.parameters_table(fit),
         "appended",
@@ -223,9 +266,7 @@ def _diagnostics(fit: Fit, tag: str) -> Section:
         else ""
     )
     drawings = (drawing,) if drawing else ()
-    return Section(
-        "Can the sampler be trusted?", drawings, "Figure 7.", caption, pages.diagnostics_table(fit), "here"
-    )
+    return Section("Can the sampler be trusted?", drawings, "", caption, pages.diagnostics_table(fit), "here")
 
 
 def _provenance(

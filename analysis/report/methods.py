@@ -1,8 +1,13 @@
 """The methods paragraph and the references of a report, said from the settings of its fit."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from analysis.closer_look import CloserLook
+from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
+from analysis.refits import Refits
 from analysis.results import Fit
+from analysis.stuck import StuckRate
 
 
 @dataclass(frozen=True)
@@ -55,13 +60,63 @@ VEHTARI = Reference(
 )
 
 
-def methods(fit: Fit) -> tuple[str, ...]:
+KRUSCHKE = Reference(
+    "Kruschke 2018",
+    "Kruschke, J. K. (2018). Rejecting or accepting parameter values in Bayesian estimation. Advances in "
+    "Methods "
+    "and Practices in Psychological Science 1(2), 270-280.",
+)
+GELMAN = Reference(
+    "Gelman et al. 1996",
+    "Gelman, A., Meng, X.-L. and Stern, H. (1996). Posterior predictive assessment of model fitness via "
+    "realized "
+    "discrepancies. Statistica Sinica 6(4), 733-760.",
+)
+KENDALL = Reference(
+    "Kendall & Babington Smith 1940",
+    "Kendall, M. G. and Babington Smith, B. (1940). On the method of paired comparisons. Biometrika 31(3/4), "
+    "324-345.",
+)
+RUBIN = Reference(
+    "Rubin 1981", "Rubin, D. B. (1981). The Bayesian bootstrap. The Annals of Statistics 9(1), 130-134."
+)
+FISHER = Reference(
+    "Fisher 1935",
+    "Fisher, R. A. (1935). The logic of inductive inference. Journal of the Royal Statistical Society "
+    "98(1), 39-82.",
+)
+MEHTA = Reference(
+    "Mehta et al. 1985",
+    "Mehta, C. R., Patel, N. R. and Gray, R. (1985). Computing an exact confidence interval for the common "
+    "odds "
+    "ratio in several 2 x 2 contingency tables. Journal of the American Statistical Association 80(392), "
+    "969-973.",
+)
+VEHTARI_LOO = Reference(
+    "Vehtari et al. 2017",
+    "Vehtari, A., Gelman, A. and Gabry, J. (2017). Practical Bayesian model evaluation using leave-one-out "
+    "cross-validation and WAIC. Statistics and Computing 27(5), 1413-1432.",
+)
+
+
+def methods(
+    fit: Fit,
+    look: CloserLook | None = None,
+    rates: Sequence[StuckRate] = (),
+    refitted: Refits | None = None,
+) -> tuple[str, ...]:
     """Paragraphs that let someone repeat the analysis."""
-    return (_model(fit), _worth(fit), _sampling(fit))
+    more = [_closer(look), _stuck(rates), _refits(refitted)]
+    return (_model(fit), _worth(fit), _sampling(fit), *(text for text in more if text))
 
 
-def references(fit: Fit) -> tuple[Reference, ...]:
-    """The sources of the model, the sampler and the checks that this fit used."""
+def references(
+    fit: Fit,
+    look: CloserLook | None = None,
+    rates: Sequence[StuckRate] = (),
+    refitted: Refits | None = None,
+) -> tuple[Reference, ...]:
+    """The sources of the model, the sampler and the checks that this report used."""
     levels = {q.question.levels for q in fit.questions}
     used = [BRADLEY_TERRY]
     if fit.settings.link == "adjacent":
@@ -75,7 +130,78 @@ def references(fit: Fit) -> tuple[Reference, ...]:
     if fit.settings.engine != "gibbs":
         used.append(HOFFMAN_GELMAN)
     used.append(VEHTARI)
+    if look is not None:
+        used += [KRUSCHKE] if look.equivalences else []
+        used += [GELMAN] if look.checks else []
+        used += [KENDALL] if look.consistencies else []
+        used += [RUBIN] if look.associations else []
+    used += [FISHER, MEHTA] if len(rates) > 1 else []
+    used += [VEHTARI_LOO] if refitted is not None and refitted.scores else []
     return tuple(used)
+
+
+def _closer(look: CloserLook | None) -> str:
+    if look is None:
+        return ""
+    said = []
+    if look.equivalences:
+        said.append(
+            f"Two modes are practically equal where their abilities differ by at most "
+            f"{EQUIVALENT_BELOW:.2f} logits, a "
+            f"preference of {100 * EQUIVALENT_CHANCE:.0f} in 100; the posterior probability of that region "
+            f"is given "
+            "(Kruschke 2018)."
+        )
+    if any(a.people for a in look.agreements):
+        said.append(
+            "Participants' own abilities are drawn given the group's parameters by importance weights on "
+            "quasi-random points of their prior."
+        )
+    if look.checks:
+        said.append(
+            "Posterior predictive checks (Gelman et al. 1996) draw new participants with the same "
+            "schedule; Bayesian "
+            "p-values count half of the predictions equal to what was observed."
+        )
+    if look.consistencies:
+        said.append(
+            "Circular triads, the coefficient of consistence and Kendall's u follow Kendall & Babington "
+            "Smith (1940), a "
+            "tie counting as half a preference each; u is compared with 1,000 sets of coin tosses."
+        )
+    if look.associations:
+        said.append(
+            "Metrics are averaged over the laps of a comparison, then over each participant's comparisons; "
+            "intervals "
+            "are those of the Bayesian bootstrap over participants (Rubin 1981)."
+        )
+    return " ".join(said)
+
+
+def _stuck(rates: Sequence[StuckRate]) -> str:
+    if not rates:
+        return ""
+    return (
+        "Stuck rates are shares of a mode's comparisons, with a uniform prior. Over people, each "
+        "participant's rate is "
+        "Beta distributed with uniform mean and intraclass correlation, and, per minute of exposure, Gamma "
+        "distributed "
+        "with Poisson counts. Rates are compared by their posteriors, and beside it by Fisher's exact test "
+        "(1935) and "
+        "the exact conditional test within participants (Mehta et al. 1985)."
+    )
+
+
+def _refits(refitted: Refits | None) -> str:
+    if refitted is None or not refitted.scores:
+        return ""
+    return (
+        "Models were compared by the log predictive density of participants left out, each model fitted "
+        "anew without "
+        "them, a participant's own deviations integrated out; standard errors are over participants "
+        "(Vehtari et al. "
+        "2017)."
+    )
 
 
 def _model(fit: Fit) -> str:

@@ -15,6 +15,7 @@ from analysis.report.findings import Finding, Phrase
 from analysis.report.methods import Reference
 from analysis.results import Fit, QuestionFit
 from analysis.stuck import StuckRate
+from analysis.stuck_contrasts import StuckContrast
 
 MOST_ROWS = 400
 """A longer table stays in its CSV file: the page says which."""
@@ -249,17 +250,48 @@ def stuck_table(rates: Sequence[StuckRate]) -> Table:
     rows = tuple(
         (
             one_line(r.mode),
-            f"{r.comparisons:,}",
-            f"{r.stuck:,}",
-            f"{100 * r.rate_mean:.1f} %",
-            f"{100 * r.rate_hdi_low:.1f} to {100 * r.rate_hdi_high:.1f} %",
-            f"{100 * r.between.hdi_low:.1f} to {100 * r.between.hdi_high:.1f} %",
-            "" if isnan(r.per_minute_mean) else f"{r.per_minute_mean:.3f}",
+            f"{r.stuck:,} of {r.comparisons:,}",
+            f"{100 * r.rate_mean:.1f} % ({100 * r.rate_hdi_low:.1f} to {100 * r.rate_hdi_high:.1f})",
+            f"{100 * r.between.mean:.1f} % ({100 * r.between.hdi_low:.1f} to {100 * r.between.hdi_high:.1f})",
+            "" if isnan(r.exposure_min) else f"{r.exposure_min:.1f}",
+            ""
+            if isnan(r.per_minute_mean)
+            else f"{r.per_minute_mean:.2f} ({r.per_minute_hdi_low:.2f} to {r.per_minute_hdi_high:.2f})",
+            ""
+            if r.per_minute_between is None
+            else f"{r.per_minute_between.mean:.2f} ({r.per_minute_between.hdi_low:.2f} to "
+            f"{r.per_minute_between.hdi_high:.2f})",
         )
         for r in rates
     )
-    columns = ("Mode", "Comparisons", "Stuck", "Rate", "94 % interval", "Over people", "Per minute")
-    return Table(columns, (False, *([True] * 6)), rows, "stuck.csv")
+    columns = ("Mode", "Stuck", "Rate", "Over people", "Minutes", "Per minute", "Per minute over people")
+    return Table(columns, (False, *([True] * 6)), rows, "stuck.csv and parameters.csv")
+
+
+def contrasts_section(contrasts: Sequence[StuckContrast]) -> Section | None:
+    """Stuck rates against each other: posterior, and exact tests beside it."""
+    if not contrasts:
+        return None
+    words = (
+        "The chance is posterior. Beside it exact tests of equal rates, two-sided: Fisher's takes "
+        "comparisons as "
+        "independent; the one within people conditions on how often each person got stuck, so that a few "
+        "people "
+        "who are stuck in everything can't make a difference between modes. No correction for several pairs.",
+    )
+    rows = tuple(
+        (
+            one_line(c.mode_i),
+            one_line(c.mode_j),
+            f"{percent(c.p_i_above_j)} %",
+            f"{c.p_fisher:.2g}",
+            f"{c.p_within_people:.2g}",
+        )
+        for c in contrasts
+    )
+    columns = ("Mode i", "Mode j", "i higher", "p, Fisher", "p, within people")
+    table = Table(columns, (False, False, True, True, True), rows, "stuck_contrasts.csv")
+    return Section("Do the stuck rates differ?", (), "", "", table, words=words)
 
 
 def diagnostics_table(fit: Fit) -> Table:

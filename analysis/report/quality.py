@@ -55,6 +55,12 @@ def exclusion_section(excluded: LagExclusion | None) -> Section | None:
         words.append(f"Of {excluded.unmeasured:,} of them nothing was measured; these stay.")
     if left:
         words.append("Worth and chance to rank first, with them and without:")
+    table = lag_changes_table(excluded, "lag.csv") if left else None
+    return Section("Without the laggy comparisons", (), "", "", table, words=tuple(words))
+
+
+def lag_changes_table(excluded: LagExclusion, source: str) -> Table:
+    """Worth and chance to rank first, with the laggy comparisons and without."""
     rows = tuple(
         (
             one_line(c.question),
@@ -67,8 +73,7 @@ def exclusion_section(excluded: LagExclusion | None) -> Section | None:
         for c in excluded.changes
     )
     columns = ("Question", "Mode", "Worth with", "Worth without", "First with", "First without")
-    table = Table(columns, (False, False, *([True] * 4)), rows, "lag.csv") if left else None
-    return Section("Without the laggy comparisons", (), "", "", table, words=tuple(words))
+    return Table(columns, (False, False, *([True] * 4)), rows, source)
 
 
 def checks_section(shares: Sequence[CheckShare]) -> Section | None:

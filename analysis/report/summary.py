@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.lag import LagExclusion
+from analysis.report.cautions import unanswered
 from analysis.report.tables import neutralised_names
 from analysis.results import Fit
 from data.responses import ResponseTable
@@ -90,7 +91,7 @@ def summarise(
         "ess_min": _finite(fit.ess_min),
         "divergences": fit.divergences,
         "converged": fit.converged,
-        "ranked": fit.ranked,
+        "ranked": fit.ranked and not unanswered(fit, study),
         "questions": {
             q.question.name: {
                 "ranked": q.ranked,
@@ -105,10 +106,29 @@ def summarise(
                 "missing_pairs": [list(pair) for pair in q.missing_pairs],
             }
             for q in fit.questions
-        },
+        }
+        | {name: _never_answered(name, study) for name in unanswered(fit, study)},
         "warnings": warnings,
         "before_you_quote_this": list(cautions),
         "versions": versions(fit.settings.engine),
+    }
+
+
+def _never_answered(name: str, study: Study | None) -> dict[str, Json]:
+    """A question of the study that no row of the data is about: the same keys as the others."""
+    assert study is not None
+    question = next(q for q in study.questions if q.name == name)
+    return {
+        "ranked": False,
+        "reason": "Nobody answered this question.",
+        "levels": question.levels,
+        "levels_inferred": False,
+        "polarity": question.polarity,
+        "responses": 0,
+        "rhat_max": None,
+        "ess_min": None,
+        "divergences": 0,
+        "missing_pairs": [list(pair) for pair in study.pairs],
     }
 
 

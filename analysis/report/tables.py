@@ -6,9 +6,12 @@ from dataclasses import fields
 from pathlib import Path
 
 from analysis.checks import CheckShare
+from analysis.closer_look import CloserLook
 from analysis.lag import LagChange, ModeDelay
+from analysis.refits import Refits
 from analysis.results import Fit, Quantity, QuestionFit
 from analysis.stuck import StuckRate
+from analysis.stuck_contrasts import StuckContrast
 
 _FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
 Cell = str | int | float
@@ -34,6 +37,8 @@ def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Cell]])
 def _cell(value: Cell) -> str:
     if isinstance(value, float):
         return "" if math.isnan(value) else repr(float(value))
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, int):
         return str(value)
     text = neutralised(value)
@@ -117,6 +122,43 @@ def write_quality(
         write_csv(
             folder / "checks.csv", header, ((s.participant, s.answers, s.same, s.share) for s in checks)
         )
+
+
+def write_closer_look(look: CloserLook, contrasts: Sequence[StuckContrast], folder: Path) -> None:
+    """Write what goes beyond the ranking, each file if there is anything to write."""
+    people = [(a.question, p) for a in look.agreements for p in a.people]
+    if people:
+        header = [field.name for field in fields(people[0][1])]
+        rows = ([question, *(getattr(p, h) for h in header)] for question, p in people)
+        write_csv(folder / "people.csv", ["question", *header], rows)
+    for name, found in (
+        ("equivalence", look.equivalences),
+        ("strength", look.strengths),
+        ("consistency", look.consistencies),
+        ("predictive", look.checks),
+        ("measures", look.measures),
+        ("association", look.associations),
+        ("stuck_contrasts", contrasts),
+    ):
+        _write_results(folder / f"{name}.csv", found)
+
+
+def write_refits(refitted: Refits, folder: Path) -> None:
+    """Write what refits tell, each file if there is anything to write."""
+    for name, found in (
+        ("models", refitted.scores),
+        ("priors", refitted.shifts),
+        ("covariates", refitted.effects),
+        ("lag", refitted.lag.changes if refitted.lag is not None else ()),
+    ):
+        _write_results(folder / f"{name}.csv", found)
+
+
+def _write_results(path: Path, results: Sequence[object]) -> None:
+    """A row a result, a column a field."""
+    if results:
+        header = [field.name for field in fields(results[0])]  # type: ignore[arg-type]
+        write_csv(path, header, ([getattr(r, h) for h in header] for r in results))
 
 
 def _both_ways(fit: Fit, question: QuestionFit) -> list[Sequence[Cell]]:

@@ -4,17 +4,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from analysis.closer_look import closer_look
 from analysis.data_quality import data_quality
 from analysis.lag import LagExclusion
 from analysis.posterior import write_posterior
+from analysis.refits import Refits
 from analysis.report.cautions import cautions
 from analysis.report.findings import findings
 from analysis.report.summary import Json, summarise, versions, write_summary
-from analysis.report.tables import write_quality, write_tables
-from analysis.results import Fit
+from analysis.report.tables import write_closer_look, write_quality, write_refits, write_tables
+from analysis.results import Fit, Quantity
 from analysis.stuck import StuckRate, stuck_rates
+from analysis.stuck_contrasts import stuck_contrasts
 from data.locations import writing_folder
-from data.responses import LagTable, ResponseTable, StuckTable
+from data.responses import LagTable, MetricTable, ResponseTable, StuckTable
 from data.study import Study
 
 Progress = Callable[[int, int, str], None]
@@ -32,6 +35,17 @@ OWNS = (
     "delay.csv",
     "lag.csv",
     "checks.csv",
+    "equivalence.csv",
+    "strength.csv",
+    "people.csv",
+    "consistency.csv",
+    "predictive.csv",
+    "measures.csv",
+    "association.csv",
+    "stuck_contrasts.csv",
+    "models.csv",
+    "priors.csv",
+    "covariates.csv",
     "summary.json",
     "posterior.nc",
 )
@@ -65,6 +79,8 @@ def write_report(
     progress: Progress | None = None,
     lag: LagTable | None = None,
     excluded: LagExclusion | None = None,
+    metrics: MetricTable | None = None,
+    refitted: Refits | None = None,
 ) -> ReportResult:
     """Write ``report.html``, its figures, and the tables, summary and posterior to a folder.
 
@@ -84,6 +100,10 @@ def write_report(
         Where people guided the robot: how promptly it followed, in all comparisons.
     excluded : LagExclusion or None
         What ``table`` and ``stuck`` leave out because of lag, and what that changes.
+    metrics : MetricTable or None
+        Objective metrics of the laps behind the answers, where they are known.
+    refitted : Refits or None
+        What refits tell, for a full report.
 
     Raises
     ------
@@ -96,12 +116,17 @@ def write_report(
     rates = _known_rates(stuck, fit)
     checks = int(table.rows.loc[table.rows["check"].astype(bool), "count"].sum())
     quality = data_quality(table, fit.modes, lag, excluded)
+    look = closer_look(table, fit, metrics)
+    contrasts = stuck_contrasts(stuck, rates) if stuck is not None and rates else ()
     said = cautions(table, fit, findings(fit), study, checks, quality)
     summary = summarise(table, fit, study, said, checks, excluded)
     with writing_folder(out, marker=MARKER, owns=OWNS) as folder:
         tell(0, STEPS, "tables")
-        write_tables(fit, rates, [("", rate.between) for rate in rates], folder)
+        write_tables(fit, rates, _more_parameters(rates), folder)
         write_quality(quality.delays, excluded.changes if excluded else (), quality.checks, folder)
+        write_closer_look(look, contrasts, folder)
+        if refitted is not None:
+            write_refits(refitted, folder)
         write_summary(summary, folder / "summary.json")
         tell(1, STEPS, "posterior")
         write_posterior(fit, folder / "posterior.nc")
@@ -109,7 +134,18 @@ def write_report(
         from analysis.report.compose import compose
         from analysis.report.page import render
 
-        page = compose(table, fit, rates, quality, study, said, versions(fit.settings.engine))
+        page = compose(
+            table,
+            fit,
+            look,
+            rates,
+            contrasts,
+            quality,
+            refitted,
+            study,
+            said,
+            versions(fit.settings.engine),
+        )
         figures = folder / "figures"
         figures.mkdir()
         for section in (page.worth, *page.sections):
@@ -121,6 +157,16 @@ def write_report(
         names = sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
     names.sort(key=lambda name: name.name != "report.html")
     return ReportResult(out, tuple(out / name for name in names), summary)
+
+
+def _more_parameters(rates: tuple[StuckRate, ...]) -> list[tuple[str, Quantity]]:
+    """Hierarchical stuck rates, per comparison and per minute, as rows of no question."""
+    return [
+        ("", rate)
+        for per in ([r.between for r in rates], [r.per_minute_between for r in rates])
+        for rate in per
+        if rate is not None
+    ]
 
 
 def _known_rates(stuck: StuckTable | None, fit: Fit) -> tuple[StuckRate, ...]:

@@ -14,6 +14,12 @@ def power(
     participants: Annotated[
         str, typer.Option("--participants", metavar="N,N,...", help="Numbers of participants to try.")
     ] = "7,14,20,30,45",
+    repetitions: Annotated[
+        int | None,
+        typer.Option(
+            "--repetitions", min=1, max=50, help="How often a person sees each pair. Default: the study's."
+        ),
+    ] = None,
     worth: Annotated[
         str | None,
         typer.Option(
@@ -25,7 +31,9 @@ def power(
     levels: Annotated[int, typer.Option("--levels", metavar="2|3|5", help="Levels of the scale.")] = 3,
     cuts: Annotated[
         str | None,
-        typer.Option("--cuts", metavar="X,X", help="Cut-points [logit]. Default: 0.5, or 0.5,1.5."),
+        typer.Option(
+            "--cuts", metavar="X,X", help="Cut-points [logit]: larger, more ties. Default: 0.5, or 0.5,1.5."
+        ),
     ] = None,
     subject_sd: Annotated[
         float, typer.Option("--subject-sd", min=0, max=10, help="Differences between people [logit].")
@@ -56,6 +64,9 @@ def power(
     from data.locations import check_folder
 
     opened = open_study(study).study
+    if repetitions is not None:
+        protocol = opened.protocol.model_copy(update={"repetitions": repetitions})
+        opened = opened.model_copy(update={"protocol": protocol})
     default_cuts = {2: "", 3: "0.5", 5: "0.5,1.5"}.get(levels, "")
     scenario = Scenario(
         worth=_numbers("--worth", worth or ",".join(["1"] * (len(opened.modes) - 1) + ["2"])),

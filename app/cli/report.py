@@ -42,6 +42,14 @@ def report(
     ] = 1.0,
     link: Annotated[Link, typer.Option(help="adjacent: three-level questions only.")] = Link.cumulative,
     seed: Annotated[int, typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the sampler.")] = 2017,
+    full: Annotated[
+        bool,
+        typer.Option(
+            "--full",
+            help="Add what needs refits: models compared by leaving out participants, other priors, laggy "
+            "comparisons left out, worth on metrics. Takes minutes.",
+        ),
+    ] = False,
     include_simulated: SimulatedOption = False,
     max_latency_ms: Annotated[
         float | None,
@@ -65,6 +73,8 @@ def report(
     Examples:
 
     elbowroom report --store study.sqlite --out report
+
+    elbowroom report --store study.sqlite --out report --full
 
     elbowroom report --responses answers.csv --study carmichael2017 --out report
 
@@ -95,5 +105,6 @@ def report(
             link=link.value,
             seed=seed,
             lag_limits=LagLimits(max_latency_ms, max_skipped),
+            full=full,
         )
     )

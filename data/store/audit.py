@@ -36,7 +36,7 @@ class AuditVerdict:
     def sentence(self) -> str:
         """One line for people."""
         if self.is_intact:
-            return f"audit log intact: {self.entries} entries"
+            return f"audit log intact: {self.entries} {'entry' if self.entries == 1 else 'entries'}"
         return f"audit log changed after it was written, from entry {self.first_bad} on"
 
 

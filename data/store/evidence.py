@@ -8,7 +8,7 @@ from sqlalchemy import Select, func, join, or_, select
 
 from data.errors import InputError
 from data.records import Source
-from data.responses import LagTable, QuestionScale, ResponseTable, StuckTable, rows_sha256
+from data.responses import LagTable, MetricTable, QuestionScale, ResponseTable, StuckTable, rows_sha256
 from data.store.links import StoredLinks
 from data.store.rows import every
 from data.store.studies import StoredStudy
@@ -209,6 +209,49 @@ class StoredEvidence(StoredLinks):
             for trial in known
         ]
         return LagTable(pd.DataFrame(rows))
+
+    def metric_table(self, study: StoredStudy, include_simulated: bool = False) -> MetricTable | None:
+        """Objective metrics of the laps behind the answers; None if none has any.
+
+        Attention checks are left out, and trials from before a comparison was begun anew.
+        """
+        sources = self.sources(study, include_simulated)
+        query = (
+            select(
+                comparisons.c.participant,
+                trials.c.comparison,
+                trials.c.mode,
+                trials.c.metrics,
+                participants.c.background,
+            )
+            .join_from(trials, comparisons)
+            .join(participants)
+            .where(
+                participants.c.study == study.id,
+                participants.c.source.in_(sources),
+                trials.c.outcome.in_(["completed", "stuck"]),
+                comparisons.c.check.is_(False),
+                or_(comparisons.c.restarted_at.is_(None), trials.c.started_at >= comparisons.c.restarted_at),
+            )
+            .order_by(
+                participants.c.source,
+                participants.c.number,
+                participants.c.id,
+                comparisons.c.position,
+                trials.c.slot,
+                trials.c.number,
+            )
+        )
+        with self.reading() as connection:
+            known = [trial for trial in every(connection, query) if trial["metrics"]]
+        if not known:
+            return None
+        keys = ["participant", "comparison", "mode"]
+        measured = pd.DataFrame([dict(trial["metrics"]) for trial in known]).astype("float64")
+        named = pd.DataFrame([{key: trial[key] for key in keys} for trial in known])
+        rows = pd.concat([named, measured], axis=1).groupby(keys, sort=False, as_index=False).mean()
+        background = {trial["participant"]: dict(trial["background"] or {}) for trial in known}
+        return MetricTable(rows, background)
 
     def counts(self, study: StoredStudy, include_simulated: bool = False) -> Counts:
         """How far a study has come, among people or with simulated participants as well."""

@@ -5,7 +5,8 @@ import pandas as pd
 import pytest
 from scipy.stats import beta, gamma
 
-from analysis.stuck import stuck_contrasts, stuck_rates
+from analysis.stuck import stuck_rates
+from analysis.stuck_contrasts import exact_p, stuck_contrasts
 from data.responses import StuckTable
 
 
@@ -67,7 +68,8 @@ def test_a_comparison_each_says_what_independent_comparisons_say():
 
 
 def test_two_modes_are_told_apart_exactly():
-    (contrast,) = stuck_contrasts(stuck_rates(events({"M1": ELEVEN, "M2": NONE})))
+    table = events({"M1": ELEVEN, "M2": NONE})
+    (contrast,) = stuck_contrasts(table, stuck_rates(table))
     assert contrast.p_fisher == pytest.approx(2.884e-4, rel=1e-3)
     rng = np.random.default_rng(1)
     sampled = (rng.beta(12, 18, 10**6) > rng.beta(1, 29, 10**6)).mean()
@@ -77,3 +79,21 @@ def test_two_modes_are_told_apart_exactly():
 def test_no_exposure_has_no_rate_per_minute():
     (rate,) = stuck_rates(events({"M1": [(1, 4)]}, exposure_s=0.0))
     assert np.isnan(rate.per_minute_mean)
+
+
+def test_one_stratum_is_fishers_test_and_strata_follow_each_person():
+    assert exact_p(np.array([[11, 28]]), np.array([[0, 28]])) == pytest.approx(2.884e-4, rel=1e-3)
+    # One person always stuck, one never: between modes nothing differs within either.
+    assert exact_p(np.array([[4, 4], [0, 4]]), np.array([[4, 4], [0, 4]])) == pytest.approx(1.0)
+    # Each of three people is stuck in the one comparison with the first mode alone: (1/2) ** 3, two-sided.
+    once, never = np.array([[1, 1]] * 3), np.array([[0, 1]] * 3)
+    assert exact_p(once, never) == pytest.approx(0.25)
+
+
+def test_people_who_differ_widen_the_rate_per_minute_too():
+    alike = stuck_rates(events({"M1": [(2, 4)] * 8}))[0].per_minute_between
+    apart = stuck_rates(events({"M1": [(4, 4), (0, 4)] * 4}))[0].per_minute_between
+    assert alike is not None
+    assert apart is not None
+    assert apart.sd > 1.1 * alike.sd
+    assert alike.hdi_low < 16 / 32 < alike.hdi_high

@@ -68,9 +68,9 @@ def test_the_page_loads_nothing_from_anywhere(study_page):
 
 def test_every_drawing_has_words_for_who_cannot_see_it_and_numbers_behind_it(study_page):
     reader, _ = study_page
-    assert len(reader.labels) == 7
+    assert len(reader.labels) == 10
     assert all(len(label) > 40 for label in reader.labels)
-    assert reader.tags.count("details") == 7
+    assert reader.tags.count("details") == 10
 
 
 def test_every_id_of_the_page_is_given_once(study_page):
@@ -111,8 +111,8 @@ def test_simulated_answers_are_said_to_be_simulated_wherever_they_are_shown(simu
     words = reader.words
     assert "do simulated participants prefer?" in words
     assert "These answers were simulated, so they say nothing about people." in words
-    captions = re.findall(r"Figure \d\. .*?(?=The numbers)", words)
-    assert len(captions) == 7
+    captions = re.findall(r"Figure \d+\. .*?(?=The numbers)", words)
+    assert len(captions) == 10
     assert all("Simulated data." in caption for caption in captions)
     for drawing in (simulated_report / "figures").glob("*.svg"):
         assert "simulated data" in drawing.read_text(encoding="utf-8"), drawing.name

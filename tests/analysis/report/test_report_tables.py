@@ -101,7 +101,7 @@ def test_the_same_fit_gives_the_same_bytes_in_every_file_that_people_read(study_
     study = read_study("carmichael2017")
     write_report(study_case.table, study_case.fit, tmp_path / "again", study_case.stuck, study)
     compared = [p for p in study_report.rglob("*") if p.is_file() and p.suffix != ".nc"]
-    assert len(compared) == 20
+    assert len(compared) == 32
     for path in compared:
         assert path.read_bytes() == (tmp_path / "again" / path.relative_to(study_report)).read_bytes(), (
             path.name
@@ -114,12 +114,19 @@ def test_the_summary_says_how_the_report_came_about(study_report, study_case):
     assert summary["seed"] == 2017
     assert summary["data_sha256"] == study_case.table.sha256
     assert summary["simulated"] is False
-    assert summary["ranked"] is True
     assert summary["converged"] is True
     assert summary["questions"]["Q2"] | {"ranked": True, "reason": ""} == summary["questions"]["Q2"]
     assert summary["counts"]["participants"] == 6
     assert summary["counts"]["responses"] == 108
     assert summary["rhat_max"] == study_case.fit.rhat_max
+
+
+def test_a_question_that_nobody_answered_stays_in_the_summary_with_the_reason(study_report):
+    summary = json.loads((study_report / "summary.json").read_text(encoding="utf-8"))
+    assert set(summary["questions"]) == {"Q1", "Q2", "Q3", "Q4", "Q5", "Q6"}
+    assert summary["questions"]["Q1"]["ranked"] is False
+    assert summary["questions"]["Q1"]["reason"] == "Nobody answered this question."
+    assert summary["ranked"] is False
 
 
 def test_comparisons_that_every_participant_numbers_alike_are_counted_for_each(study_case):

@@ -1,0 +1,51 @@
+"""What a report says beyond the ranking and needs no refit for, gathered in one place."""
+
+from dataclasses import dataclass
+
+from analysis.answer_shares import PairShares, answer_shares
+from analysis.association import Association, ModeMeasure, associations, mode_measures
+from analysis.consistency import Consistency, consistencies
+from analysis.equivalence import Equivalence, equivalences
+from analysis.persons import Agreement, agreements
+from analysis.predictive import PredictiveCheck, predictive_checks
+from analysis.results import Fit
+from analysis.strength import Strength, strengths
+from data.responses import MetricTable, ResponseTable
+
+
+@dataclass(frozen=True)
+class CloserLook:
+    """Each part in the order of the fit's questions; empty where nothing is known.
+
+    Attributes
+    ----------
+    shares : tuple of tuples of PairShares
+        Question by question.
+    measures, associations
+        Of the metrics of the laps, where there are laps.
+    """
+
+    shares: tuple[tuple[PairShares, ...], ...]
+    strengths: tuple[Strength, ...]
+    equivalences: tuple[Equivalence, ...]
+    agreements: tuple[Agreement, ...]
+    consistencies: tuple[Consistency, ...]
+    checks: tuple[PredictiveCheck, ...]
+    measures: tuple[ModeMeasure, ...] = ()
+    associations: tuple[Association, ...] = ()
+
+
+def closer_look(table: ResponseTable, fit: Fit, metrics: MetricTable | None = None) -> CloserLook:
+    """Everything beyond the ranking that the draws, the answers and the laps tell without a refit."""
+    shares = answer_shares(table, fit)
+    seed = fit.settings.seed
+    return CloserLook(
+        shares,
+        strengths(fit, shares),
+        equivalences(fit),
+        agreements(table, fit, seed),
+        consistencies(table, seed),
+        predictive_checks(table, fit),
+        mode_measures(metrics, fit.modes, seed) if metrics is not None else (),
+        associations(table, fit, metrics) if metrics is not None else (),
+    )

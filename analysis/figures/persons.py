@@ -1,0 +1,100 @@
+"""Each participant's own worths, beside the group's."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.figures.labels import distinct, fitted, one_line, percent_in_words, width_px
+from analysis.figures.panels import draw_panels
+from analysis.figures.style import (
+    DATA_2,
+    INK,
+    INK_2,
+    INK_3,
+    LINE,
+    LINE_STRONG,
+    Drawing,
+    draw_point,
+    place_axes,
+    write_heading,
+    write_text,
+)
+from analysis.persons import Agreement
+from analysis.results import QuestionFit
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_INTERVALS = 24
+"""With more people than these their intervals would hide the dots."""
+_PLOT_PX, _HEAD_PX, _FOOT_PX = 130, 30, 44
+
+
+def draw_persons(
+    questions: Sequence[QuestionFit], found: Sequence[Agreement], modes: tuple[str, ...], tag: str = ""
+) -> tuple[Drawing, ...]:
+    """One panel a question: a dot a participant for every mode, the group's worth as its marker beside
+    them."""
+    shown = [(q, a) for q, a in zip(questions, found, strict=True) if a.people]
+    top_of_scale = max(p.worth_hdi_high for _, a in shown for p in a.people)
+    per_row = 1 if len(shown) == 1 else 3 if len(modes) <= 4 else 2
+
+    def draw(figure: "Figure", k: int, left: float, top: float, width: float) -> None:
+        question, agreement = shown[k]
+        write_heading(figure, left, top + 16, question.question, width)
+        axes = place_axes(figure, left + 22, top + _HEAD_PX, width - 22, _PLOT_PX)
+        axes.set_xlim(-0.5, len(modes) - 0.5)
+        axes.set_ylim(0, top_of_scale)
+        ticks = [t for t in (0, 0.2, 0.4, 0.6, 0.8, 1.0) if t <= top_of_scale + 1e-9]
+        axes.set_yticks(ticks, ["0" if t == 0 else f"{t:.1f}".lstrip("0") for t in ticks])
+        axes.set_xticks([])
+        axes.hlines(ticks, -0.5, len(modes) - 0.5, color=LINE, linewidth=0.75, zorder=0)
+        axes.hlines(
+            1 / len(modes), -0.5, len(modes) - 0.5, color=INK_3, linewidth=0.9, linestyle=(0, (1.5, 2.2))
+        )
+        people = list(dict.fromkeys(p.participant for p in agreement.people))
+        spots = np.linspace(-0.12, 0.38, len(people)) if len(people) > 1 else np.array([0.1])
+        for m, mode in enumerate(modes):
+            own = [p for p in agreement.people if p.mode == mode]
+            x = m + spots
+            if len(people) <= MOST_INTERVALS:
+                low, high = [p.worth_hdi_low for p in own], [p.worth_hdi_high for p in own]
+                axes.vlines(x, low, high, color=LINE_STRONG, linewidth=0.9, zorder=1)
+            axes.plot(
+                x, [p.worth_mean for p in own], "o", color=DATA_2, markersize=3.2, markeredgewidth=0, zorder=2
+            )
+            result = question.modes[m]
+            axes.vlines(
+                m - 0.27, result.worth_hdi_low, result.worth_hdi_high, color=INK_2, linewidth=1.15, zorder=3
+            )
+            draw_point(axes, m - 0.27, result.worth_mean, m)
+            room = (width - 22) / len(modes)
+            name = fitted(distinct(modes, 16)[m], room - 4)
+            write_text(
+                figure,
+                left + 22 + room * (m + 0.5),
+                top + _HEAD_PX + _PLOT_PX + 14,
+                name,
+                ha="center",
+                color=INK,
+            )
+        text = f"own first is {one_line(agreement.first)}: {percent_in_words(agreement.share_mean)}"
+        if width_px(text, 8.4) > width - 22:
+            text = f"{percent_in_words(agreement.share_mean)} agree"
+        write_text(
+            figure,
+            left + 22 + (width - 22) / 2,
+            top + _HEAD_PX + _PLOT_PX + 28,
+            text,
+            ha="center",
+            fontsize=8.4,
+        )
+
+    said = [
+        f"{one_line(a.question)}: {percent_in_words(a.share_mean)} of people have {one_line(a.first)} first"
+        for _, a in shown
+    ]
+    heights = [_HEAD_PX + _PLOT_PX + _FOOT_PX] * len(shown)
+    alt = f"Worth of every mode for each participant and for the group. {'; '.join(said)}."
+    return draw_panels(heights, draw, per_row=per_row, name="persons", alt=alt, tag=tag)

@@ -1,0 +1,103 @@
+"""What the answers show, beside what the fitted model predicts of new people."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from analysis.figures.labels import fitted, one_line
+from analysis.figures.panels import draw_panels
+from analysis.figures.style import (
+    DATA,
+    DATA_2,
+    INK,
+    INK_2,
+    LINE,
+    LINE_STRONG,
+    Drawing,
+    place_axes,
+    write_heading,
+    write_text,
+)
+from analysis.predictive import PredictiveCheck
+from data.responses import QuestionScale
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_PAIRS = 10
+"""Of more pairs those that the model predicts worst are drawn."""
+_ROW_PX, _HEAD_PX, _FOOT_PX = 16, 40, 30
+_NAMES = {"ties": "ties", "spread": "people apart"}
+
+
+def draw_predictive(
+    questions: Sequence[QuestionScale], checks: Sequence[PredictiveCheck], tag: str = ""
+) -> tuple[Drawing, ...]:
+    """One panel a question: observed shares as dots on the central 94 % of the predictions."""
+    of = {q.name: _shown([c for c in checks if c.question == q.name]) for q in questions}
+    shown = [q for q in questions if of[q.name]]
+
+    def draw(figure: "Figure", k: int, left: float, top: float, width: float) -> None:
+        rows = of[shown[k].name]
+        write_heading(figure, left, top + 16, shown[k], width)
+        label, right = 0.36 * width, 30.0
+        write_text(figure, left + width, top + _HEAD_PX - 6, "p", ha="right", fontsize=8.4)
+        axes = place_axes(figure, left + label, top + _HEAD_PX, width - label - right, _ROW_PX * len(rows))
+        axes.set_xlim(0, max(1.0, *(c.predicted_high for c in rows), *(c.observed for c in rows)))
+        axes.set_ylim(len(rows), 0)
+        axes.set_yticks([])
+        ticks = (0, 0.25, 0.5, 0.75, 1.0)
+        axes.set_xticks(ticks, ("0", ".25", ".5", ".75", "1"))
+        axes.vlines(ticks, 0, len(rows), color=LINE, linewidth=0.75, zorder=0)
+        for row, check in enumerate(rows):
+            axes.hlines(
+                row + 0.5,
+                check.predicted_low,
+                check.predicted_high,
+                color=LINE_STRONG,
+                linewidth=5.5,
+                zorder=1,
+            )
+            axes.vlines(check.predicted_mean, row + 0.28, row + 0.72, color=DATA_2, linewidth=1.4, zorder=2)
+            axes.plot(
+                [check.observed],
+                [row + 0.5],
+                "D" if check.is_unlikely else "o",
+                color=DATA,
+                markersize=4.6,
+                markeredgewidth=0,
+                clip_on=False,
+                zorder=3,
+            )
+            y = top + _HEAD_PX + _ROW_PX * (row + 0.5) + 4
+            name = fitted(_NAMES.get(check.kind, check.what), label - 8, 8.4)
+            write_text(figure, left + label - 8, y, name, ha="right", color=INK, fontsize=8.4)
+            write_text(
+                figure,
+                left + width,
+                y,
+                f"{check.p:.2f}".lstrip("0") if check.p < 1 else "1",
+                ha="right",
+                fontsize=8.4,
+                weight="bold" if check.is_unlikely else "normal",
+                color=INK if check.is_unlikely else INK_2,
+            )
+
+    far = [
+        f"{one_line(c.question)} {c.kind} {one_line(c.what) if c.what else ''}"
+        for c in checks
+        if c.is_unlikely
+    ]
+    alt = (
+        f"{len(checks)} shares of answers as observed and as the model predicts them. "
+        f"Hardly predicted: {', '.join(far[:12]) if far else 'none'}."
+    )
+    heights = [_HEAD_PX + _ROW_PX * len(of[q.name]) + _FOOT_PX for q in shown]
+    per_row = 1 if len(shown) == 1 else 2
+    return draw_panels(heights, draw, per_row=per_row, name="predictive", alt=alt, tag=tag)
+
+
+def _shown(checks: list[PredictiveCheck]) -> list[PredictiveCheck]:
+    """All but pairs beyond the most that fit, in their order."""
+    pairs = [c for c in checks if c.kind == "wins"]
+    kept = sorted(pairs, key=lambda c: -abs(c.p - 0.5))[:MOST_PAIRS]
+    return [c for c in checks if c.kind != "wins" or c in kept]

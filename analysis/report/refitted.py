@@ -1,0 +1,139 @@
+"""The report's sections on what refits tell: other models, other priors, laggy comparisons left out."""
+
+from math import isnan
+
+from analysis.figures.labels import isolated, one_line, percent
+from analysis.leaving_out import MOST_FOLDS, SMALL_DIFFERENCE, ModelScore
+from analysis.refits import Refits
+from analysis.report.findings import listed
+from analysis.report.page import Section, Table
+from analysis.report.physics import effects_section
+from analysis.report.quality import lag_changes_table
+from analysis.sensitivity import PriorShift
+
+LARGE_SHIFT = 0.05
+"""A worth that moves by more is pointed out. Untuned."""
+
+
+def refit_sections(found: Refits | None) -> list[Section | None]:
+    """All sections of a full report that need refits."""
+    if found is None:
+        return []
+    return [
+        effects_section(found.effects),
+        _scores(found.scores),
+        _shifts(found.shifts),
+        _lag(found),
+    ]
+
+
+def _scores(scores: tuple[ModelScore, ...]) -> Section | None:
+    if not scores:
+        return None
+    told = [s for s in scores if s.reading in ("predicts better", "predicts worse")]
+    words = [
+        "Each model is fitted without a participant and scored by the log density of that person's answers "
+        f"(elpd, higher is better); from {MOST_FOLDS + 1} participants on they are left out in {MOST_FOLDS} "
+        f"groups. A difference below {SMALL_DIFFERENCE:g} or below two standard errors tells nothing."
+    ]
+    if told:
+        said = [f"{isolated(s.question)}: “{s.model}” {s.reading} than the report's model" for s in told]
+        words.append(f"{'; '.join(said)}.")
+    else:
+        words.append(
+            "No model is told apart from the report's: keeping a side effect and people's differences costs "
+            "nothing that these answers could show, and the simpler models predict as well."
+        )
+    if max(s.participants for s in scores) < 20:
+        words.append("With so few participants the standard errors are rough themselves.")
+    rows = tuple(
+        (
+            one_line(s.question),
+            s.model,
+            f"{s.elpd:.1f}".replace("-", "\u2212"),
+            f"{s.difference:+.1f}".replace("-", "\u2212") if s.reading else "",
+            f"{s.difference_se:.1f}" if s.reading else "",
+            s.reading,
+        )
+        for s in scores
+    )
+    columns = ("Question", "Model", "elpd", "Difference", "se", "Reading")
+    table = Table(columns, (False, False, True, True, True, False), rows, "models.csv")
+    return Section("Would another model predict people better?", (), "", "", table, words=tuple(words))
+
+
+def _shifts(shifts: tuple[PriorShift, ...]) -> Section | None:
+    if not shifts:
+        return None
+    known = [s for s in shifts if not isnan(s.worth_then)]
+    large = [s for s in known if abs(s.worth_then - s.worth) > LARGE_SHIFT]
+    most = max(known, key=lambda s: abs(s.worth_then - s.worth), default=None)
+    words = [
+        "Half and twice the scale of the prior on abilities (fitted again) and on people's differences "
+        "(draws "
+        "reweighted)."
+    ]
+    if most is not None:
+        words.append(
+            f"The largest shift: {isolated(most.mode)} on {isolated(most.question)}, from {most.worth:.2f} "
+            f"to "
+            f"{most.worth_then:.2f} under {most.prior}. "
+            + (
+                f"{len(large):,} of {len(known):,} worths move by more than {LARGE_SHIFT:g}: the answers "
+                f"are few enough "
+                "for the prior to matter."
+                if large
+                else f"No worth moves by more than {LARGE_SHIFT:g}."
+            )
+        )
+    turned = _other_firsts(known)
+    if turned:
+        words.append(f"Another mode comes first under another prior: {listed(turned[:6])}.")
+    elif known:
+        words.append("No prior changes which mode comes first.")
+    rows = tuple(
+        (
+            one_line(s.question),
+            one_line(s.mode),
+            s.prior,
+            f"{s.worth:.3f}",
+            "" if isnan(s.worth_then) else f"{s.worth_then:.3f}",
+            f"{percent(s.p_best)} %",
+            "" if isnan(s.p_best_then) else f"{percent(s.p_best_then)} %",
+        )
+        for s in shifts
+    )
+    columns = ("Question", "Mode", "Prior", "Worth", "Then", "First", "Then first")
+    table = Table(columns, (False, False, False, *([True] * 4)), rows, "priors.csv")
+    return Section("Do the priors decide?", (), "", "", table, words=tuple(words))
+
+
+def _other_firsts(shifts: list[PriorShift]) -> list[str]:
+    groups: dict[tuple[str, str], list[PriorShift]] = {}
+    for s in shifts:
+        groups.setdefault((s.question, s.prior), []).append(s)
+    said = []
+    for (question, prior), own in groups.items():
+        before, then = max(own, key=lambda s: s.p_best), max(own, key=lambda s: s.p_best_then)
+        if before.mode != then.mode:
+            said.append(f"{isolated(then.mode)} on {isolated(question)} under {prior}")
+    return said
+
+
+def _lag(found: Refits) -> Section | None:
+    excluded = found.lag
+    if excluded is None:
+        return None
+    left, total = len(excluded.comparisons), excluded.total
+    heading = "Would laggy comparisons change it?"
+    if not left:
+        text = f"None of {total:,} comparisons has a guided lap with {excluded.limits.sentence}."
+        return Section(heading, (), "", "", None, words=(text,))
+    text = (
+        f"{left:,} of {total:,} comparisons have a guided lap with {excluded.limits.sentence}. "
+        "This report keeps them. "
+    )
+    if not excluded.changes:
+        return Section(heading, (), "", "", None, words=(text + "Without them nothing would be left.",))
+    text += "Worth and chance to rank first, with them and without:"
+    return Section(heading, (), "", "", lag_changes_table(excluded, "lag.csv"), words=(text,))

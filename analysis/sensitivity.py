@@ -1,0 +1,94 @@
+"""Do the priors decide? Worths and first places under narrower and wider priors."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import nan
+
+import numpy as np
+
+from analysis.fit import fit
+from analysis.model import SUBJECT_SD_SCALE
+from analysis.results import Draws, Fit, QuestionFit
+from data.responses import ResponseTable
+
+Progress = Callable[[int, int, str], None]
+FACTORS = (0.5, 2.0)
+FEWEST_EFFECTIVE = 100.0
+"""Effective draws below which a reweighted posterior is not reported. Untuned."""
+
+
+@dataclass(frozen=True)
+class PriorShift:
+    """One mode on one question under another prior; NaN where there is no ranking or too few draws.
+
+    Attributes
+    ----------
+    prior : str
+        E.g. ``ability ~ ZeroSumNormal(0.5)``.
+    worth, p_best : float
+        Under the report's prior.
+    worth_then, p_best_then : float
+        Under the other one.
+    """
+
+    question: str
+    mode: str
+    prior: str
+    worth: float
+    worth_then: float
+    p_best: float
+    p_best_then: float
+
+
+def prior_shifts(
+    table: ResponseTable, fitted: Fit, progress: Progress | None = None
+) -> tuple[PriorShift, ...]:
+    """Half and twice the scale of the ability prior (refits), then of the subject sd's (reweighted draws)."""
+    tell = progress or (lambda done, total, text: None)
+    shifts: list[PriorShift] = []
+    if fitted.settings.engine != "gibbs":
+        for k, factor in enumerate(FACTORS):
+            tell(k, len(FACTORS), f"prior times {factor:g}")
+            scale = factor * fitted.settings.prior_sd
+            again = fit(table, replace(fitted.settings, prior_sd=scale))
+            for question, other in zip(fitted.questions, again.questions, strict=True):
+                then = {m.mode: (m.worth_mean, m.p_best) for m in other.modes}
+                shifts += _shifts(question, f"ability ~ ZeroSumNormal({scale:g})", then)
+        tell(len(FACTORS), len(FACTORS), "")
+    for factor in FACTORS:
+        scale = factor * SUBJECT_SD_SCALE
+        for question in fitted.questions:
+            if question.draws is not None and question.ranked and "subject_sd" in question.draws.parameters:
+                then = _reweighted(question.draws, fitted.modes, scale)
+                shifts += _shifts(question, f"subject_sd ~ HalfNormal({scale:g})", then)
+    return tuple(shifts)
+
+
+def _shifts(question: QuestionFit, prior: str, then: dict[str, tuple[float, float]]) -> list[PriorShift]:
+    return [
+        PriorShift(
+            question.question.name,
+            m.mode,
+            prior,
+            m.worth_mean,
+            then.get(m.mode, (nan, nan))[0],
+            m.p_best,
+            then.get(m.mode, (nan, nan))[1],
+        )
+        for m in question.modes
+    ]
+
+
+def _reweighted(draws: Draws, modes: tuple[str, ...], scale: float) -> dict[str, tuple[float, float]]:
+    """Worth and chance to rank first under ``subject_sd ~ HalfNormal(scale)``, by importance weights."""
+    sd = draws.parameters["subject_sd"].reshape(-1)
+    logs = 0.5 * sd**2 * (SUBJECT_SD_SCALE**-2 - scale**-2)
+    weights = np.exp(logs - logs.max())
+    weights /= weights.sum()
+    if 1.0 / (weights**2).sum() < FEWEST_EFFECTIVE:
+        return {}
+    worth = draws.worth.reshape(-1, len(modes))
+    is_best = worth.argmax(axis=1)[:, None] == np.arange(len(modes))
+    return {
+        mode: (float(weights @ worth[:, k]), float(weights @ is_best[:, k])) for k, mode in enumerate(modes)
+    }
