@@ -30,7 +30,8 @@ def show(desk: Desk) -> None:
     with card("file"):
         heading("The file")
         st.caption("It names the modes, as its author wrote them; which letter is which it doesn't say.")
-        st.code(stored.toml, language=None, height=420)
+        # Without a height: what scrolls within the page is out of reach for the keyboard.
+        st.code(stored.toml, language=None, wrap_lines=True)
         name = f"{desk.study.name}.toml"
         st.download_button("Download the study file", stored.toml, file_name=name, mime="application/toml")
 

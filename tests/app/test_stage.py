@@ -115,6 +115,50 @@ def test_strokes_never_add_up_and_the_strongest_stays(page: Page) -> None:
     assert strong == weak_after > again
 
 
+def test_a_change_of_speed_goes_straight_across_the_path(page: Page) -> None:
+    found = run(
+        page,
+        "path",
+        f"""const {{ Frame }} = await import('/stage/frame.js');
+        const path = new m.Path({{ solidUpTo: 0.15, faintFrom: 0.3 }});
+        const frame = new Frame({MAZE}, 880, 300);
+        path.fit(frame, 1);
+        for (let i = 0; i <= 40; i++) path.sprayTo(-0.2 - 0.01 * i, 0.45, i < 10 || i > 30 ? 0.1 : 0.3);
+        const row = (z) => {{
+          const [from, to] = [Math.round(frame.x(-0.25)), Math.round(frame.x(-0.55))];
+          const data = path.context.getImageData(from, Math.round(frame.y(z)), to - from, 1).data;
+          return [...data].filter((_, k) => k % 4 === 3);
+        }};
+        return [row(0.45), row(0.45 + 0.011), row(0.45 - 0.011)];""",
+    )
+    assert isinstance(found, list)
+    middle, above, below = found
+    assert min(middle) == pytest.approx(0.20 * 255, abs=1)
+    assert max(middle) == pytest.approx(0.97 * 255, abs=1)
+    faint = [[k for k, alpha in enumerate(row) if alpha < 90] for row in (middle, above, below)]
+    # The edge of a round brush would be 4 px further on in the middle of the path than here.
+    assert [row[0] for row in faint] == pytest.approx([faint[0][0]] * 3, abs=2)
+    assert [row[-1] for row in faint] == pytest.approx([faint[0][-1]] * 3, abs=2)
+
+
+def test_turning_back_fast_leaves_a_slow_line_solid(page: Page) -> None:
+    found = run(
+        page,
+        "path",
+        f"""const {{ Frame }} = await import('/stage/frame.js');
+        const path = new m.Path({{ solidUpTo: 0.15, faintFrom: 0.3 }});
+        const frame = new Frame({MAZE}, 880, 300);
+        path.fit(frame, 1);
+        for (let i = 0; i <= 100; i++) path.sprayTo(-0.2 - 0.002 * i, 0.452, 0.1);
+        for (let i = 0; i <= 100; i++) path.sprayTo(-0.4 + 0.002 * i, 0.449, 0.3);
+        const [from, to] = [Math.round(frame.x(-0.205)), Math.round(frame.x(-0.39))];
+        const data = path.context.getImageData(from, Math.round(frame.y(0.45)), to - from, 1).data;
+        return [...data].filter((_, k) => k % 4 === 3);""",
+    )
+    assert isinstance(found, list)
+    assert min(found) == pytest.approx(0.97 * 255, abs=2)
+
+
 def test_the_cursor_changes_its_look_with_two_degrees_of_hysteresis(page: Page) -> None:
     looks = run(
         page,

@@ -29,7 +29,7 @@ export default function (component) {
 class GuidePage {
   constructor(root, data, tell) {
     Object.assign(this, { data, tell, texts: data.texts, words: data.texts[data.device] });
-    this.device = newDevice(data.device, () => this.pump.poke(), this.words);
+    this.device = newDevice(data.device, (at) => this.pump.poke(at), this.words);
     this.practice = data.practice ? new Practice(this.texts, this.words, data.tilt) : null;
     this.parts = guideLayout(data, this.words, { device: this.device.element, practice: this.practice });
     root.append(this.parts.page);
@@ -53,7 +53,7 @@ class GuidePage {
       finished: () => this.#finished(),
       gone: () => tell('moved', data.comparison || true),
     });
-    this.pump = new InputPump((now) => this.#send(now));
+    this.pump = new InputPump((now, since) => this.#send(now, since));
     this.#atStart();
     this.#listen();
   }
@@ -183,11 +183,11 @@ class GuidePage {
     return isLong ? this.words.begin : '';
   }
 
-  #send(now) {
+  #send(now, since) {
     const input = this.device.read(now);
     const facts = { device: this.data.device, latency: this.latency.take(), frames: this.frames, clock: now };
     const seq = this.session.source.send(input, facts);
-    if (seq && input.enable) this.latency.began(seq, now);
+    if (seq && input.enable) this.latency.began(seq, since);
     else this.latency.forget();
   }
 

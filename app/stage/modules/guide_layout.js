@@ -11,7 +11,7 @@ export function guideLayout(data, words, { device, practice }) {
   const title = practice ? texts.practice_title : texts.title;
   const bar = practice ? { bar: el('section.bar', {}, practice.element) } : barParts(texts, texts.not_guided);
   const parts = { ...headParts(data, words.line, title), ...bar, ...wallParts(texts, words.keys), ...lowParts(texts) };
-  const moves = trigger(texts.robot_waits, words.key_move);
+  const moves = trigger(texts.robot_waits, words.key_hold);
   const sprays = trigger(texts.spray_off, words.key_spray);
   const triggers = el('div.triggers', {}, moves.element, sprays.element);
   const controls = practice && !device ? controlList(texts, words) : null;

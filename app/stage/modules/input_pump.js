@@ -4,10 +4,11 @@ const LEAST_GAP_MS = 8;
 const HEARTBEAT_MS = 16;
 
 export class InputPump {
-  // send(now): sends one input.
+  // send(now, since): sends one input; since when there was something to send.
   constructor(send) {
     this.send = send;
     this.sent = -Infinity;
+    this.changed = null;
     this.pending = 0;
     this.beating = 0;
   }
@@ -24,11 +25,14 @@ export class InputPump {
     clearTimeout(this.pending);
     this.beating = 0;
     this.pending = 0;
+    this.changed = null;
   }
 
-  // Something changed. Changes closer together than the least gap go out as one.
-  poke() {
-    if (!this.beating || this.pending) return;
+  // Something changed, when the event says. Changes closer together than the least gap go out as one.
+  poke(at = performance.now()) {
+    if (!this.beating) return;
+    this.changed ??= at;
+    if (this.pending) return;
     const wait = this.sent + LEAST_GAP_MS - performance.now();
     if (wait <= 0) this.#send();
     else this.pending = setTimeout(() => this.#send(), wait);
@@ -43,6 +47,8 @@ export class InputPump {
     clearTimeout(this.pending);
     this.pending = 0;
     this.sent = performance.now();
-    this.send(this.sent);
+    const since = Math.min(this.changed ?? this.sent, this.sent);
+    this.changed = null;
+    this.send(this.sent, since);
   }
 }

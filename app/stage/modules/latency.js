@@ -1,6 +1,7 @@
 // The time from an input to the first picture that shows it [ms]: measured here, told to the server with later inputs.
 
 const MOST_WAITING = 500;
+const LONGEST_MS = 60_000; // a page that slept for longer measures nothing that the server would take
 
 export class Latency {
   constructor() {
@@ -8,7 +9,7 @@ export class Latency {
     this.measured = [];
   }
 
-  // An input went out.
+  // An input went out; now: when the hand did what it says.
   began(seq, now) {
     this.sent.push({ seq, now });
     if (this.sent.length > MOST_WAITING) this.sent.shift();
@@ -22,7 +23,7 @@ export class Latency {
 
   // The oldest measurement not told yet; -1 if there is none.
   take() {
-    return this.measured.shift() ?? -1;
+    return Math.min(this.measured.shift() ?? -1, LONGEST_MS);
   }
 
   // The robot rests, or is gone: what was sent is not going to be shown soon.

@@ -1,11 +1,12 @@
 // The wall on the screen: the empty wall, what is painted on it, the hand and the nozzle's cursor.
 
 import { drawCursor } from './cursor.js';
-import { fitted, Frame, spareCanvas } from './frame.js';
+import { fitted, Frame, LANE_M, spareCanvas } from './frame.js';
 import { drawHand } from './hand.js';
 import { drawStart, drawWall } from './wall.js';
 
 const NARROW_PX = 620;
+const ROOM_FOR_WORDS_PX = 280;
 
 export class WallView {
   // texts.start: the label of start and finish.
@@ -41,7 +42,19 @@ export class WallView {
       g.scale(ratio, ratio);
       drawWall(g, this.frame);
       this.path.fit(this.frame, ratio);
+      this.#leaveRoom();
     }
     return this.frame;
+  }
+
+  // Tells the styles how wide the rectangle is, so that no words stand on the lane.
+  #leaveRoom() {
+    const { x0, x1 } = this.frame.box;
+    const lane = LANE_M * this.frame.scale;
+    const inside = x1 - x0 - lane;
+    const wall = this.canvas.parentElement;
+    wall.style.setProperty('--inside', `${inside}px`);
+    wall.style.setProperty('--outside', `${inside + 2 * lane}px`);
+    wall.toggleAttribute('data-small', inside < ROOM_FOR_WORDS_PX);
   }
 }

@@ -31,7 +31,9 @@ export class Gamepad {
   }
 
   read(now) {
-    const pad = navigator.getGamepads().find((each) => each?.connected && each.axes.length >= 4);
+    // Some browsers have none on a page without TLS that comes from another machine.
+    const pads = navigator.getGamepads?.() ?? [];
+    const pad = pads.find((each) => each?.connected && each.axes.length >= 4);
     this.isMissing = !pad;
     const [moveX, moveY, tiltX, tiltY] = pad?.axes ?? [0, 0, 0, 0];
     const holds = this.#isPressed(pad, LEFT_TRIGGER);

@@ -6,7 +6,7 @@ const FARTHEST_M = 2; // beyond it the force has long been at its cap
 const MOVES = 'onpointerrawupdate' in window ? 'pointerrawupdate' : 'pointermove';
 
 export class Grip {
-  // onChange(): the pointer took the nozzle, moved it, let go, or another of its buttons changed.
+  // onChange(at): the pointer took the nozzle, moved it, let go, or another of its buttons changed.
   constructor(wall, sight, onChange) {
     Object.assign(this, { wall, sight, onChange });
     this.release();
@@ -63,8 +63,11 @@ export class Grip {
     const box = this.wall.getBoundingClientRect();
     const { y, z } = this.sight.frame.wallAt(event.clientX - box.left, event.clientY - box.top);
     const limited = (v) => Math.min(FARTHEST_M, Math.max(-FARTHEST_M, v));
-    this.hand = { y: limited(y), z: limited(z) };
+    const hand = { y: limited(y), z: limited(z) };
+    // A move may be told twice, once at its time and once with the next picture.
+    const isNews = hand.y !== this.hand?.y || hand.z !== this.hand?.z || event.buttons !== this.buttons;
+    this.hand = hand;
     this.buttons = event.buttons;
-    this.onChange();
+    if (isNews) this.onChange(event.timeStamp);
   }
 }

@@ -1,0 +1,406 @@
+"""Everybody can take part: no page breaks a rule that axe knows, and the keyboard alone is enough."""
+
+import json
+import math
+import time
+from collections.abc import Callable, Iterator
+from datetime import timedelta
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import axe_playwright_python
+import pytest
+from playwright.sync_api import Locator, Page, WebSocketRoute, expect
+
+from app.server.passphrase import VARIABLE
+from app.server.visitors import PARTICIPANT_COOKIE
+from data.records import Comparison, Device, Slot, Trial
+from data.study import Study
+from sim_trials.scripted_hand import ScriptedHand
+
+from .conftest import GUIDED_STUDY, Server, serving
+from .guided_session import Scene, wait_for_trial
+from .test_external_runs import LAB_STUDY
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, ColorScheme
+
+pytestmark = pytest.mark.browser
+TIMEOUT_MS = 60_000
+SIZE = {"width": 1280, "height": 800}
+AXE = Path(axe_playwright_python.__file__).with_name("axe.min.js").read_text(encoding="utf-8")
+RUN_AXE = """async () => {
+    const { violations } = await axe.run(document, { resultTypes: ['violations'] });
+    const marked = document.querySelectorAll('[data-testid="stException"]').length;
+    const bad = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
+    const told = bad.map(({ id, nodes }) => `${id}: ${nodes.map((n) => n.html.slice(0, 160)).join(' | ')}`);
+    return marked ? ['an exception is shown', ...told] : told;
+}"""
+BACKGROUND = """
+[[background]]
+name = "before"
+wording = "Have you guided a robot by hand before?"
+choices = ["Never", "Often"]
+[[background]]
+name = "years"
+wording = "How old are you?"
+kind = "number"
+lowest = 18
+highest = 99
+"""
+ONE_COMPARISON = GUIDED_STUDY + BACKGROUND
+THREE_COMPARISONS = ONE_COMPARISON.replace("repetitions = 1", "repetitions = 3\nbreak_every = 2")
+CONSOLE_PAGES = ("Overview", "Sessions", "Trials", "Results", "Data", "Study file", "Links")
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A guided study with all the pages that a study can have; a passphrase opens its console."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(VARIABLE, "seven green apples")
+        with serving(tmp_path_factory.mktemp("access"), THREE_COMPARISONS) as running:
+            yield running
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A study on a robot in the lab."""
+    with serving(tmp_path_factory.mktemp("lab"), LAB_STUDY) as running:
+        yield running
+
+
+class Visit:
+    """Somebody new in a browser of their own, taken to a page by what is stored of them.
+
+    Parameters
+    ----------
+    size : dict
+        Width and height of the window [px].
+    """
+
+    def __init__(
+        self,
+        chromium: "Browser",
+        server: Server,
+        scheme: "ColorScheme" = "light",
+        device: Device = "keyboard",
+        size: dict[str, int] = SIZE,
+    ) -> None:
+        self.server, self.device = server, device
+        self.context = chromium.new_context(viewport=size, color_scheme=scheme)  # type: ignore[arg-type]
+        self.context.set_default_timeout(TIMEOUT_MS)
+        self.page = self.context.new_page()
+        self.who = ""
+
+    def join(self, *, starts: bool = False) -> None:
+        cookie, participant = self.server.join(starts=starts)
+        self.who = participant.id
+        self.context.add_cookies([{"name": PARTICIPANT_COOKIE, "value": cookie, "url": self.server.base}])
+
+    def looks_at(self, address: str, sees: str | None = None) -> Page:
+        """Open a page of the server, and wait until it shows a heading, the wall if there is to be one."""
+        self.page.goto(self.server.base + address)
+        if sees is None:
+            expect(self.page.get_by_label("Wall", exact=True)).to_be_visible(timeout=TIMEOUT_MS)
+        else:
+            expect(self.page.get_by_role("heading", name=sees).first).to_be_visible(timeout=TIMEOUT_MS)
+        self.page.wait_for_timeout(500)
+        return self.page
+
+    def comparison(self, position: int) -> Comparison:
+        return self.server.store.comparison(f"{self.who}.c{position}")
+
+    def begin(self, position: int) -> None:
+        self.server.store.start_comparison(self.comparison(position).id, self.server.store.clock())
+
+    def guide(self, position: int) -> None:
+        """So long that the questions open."""
+        store, comparison = self.server.store, self.comparison(position)
+        slots: tuple[Slot, Slot] = ("A", "B")
+        for slot in slots:
+            store.add_trial(
+                Trial(
+                    id=f"{comparison.id}.{slot}99",
+                    comparison=comparison.id,
+                    slot=slot,
+                    number=99,
+                    mode=comparison.mode_of(slot),
+                    source="guided",
+                    outcome="completed",
+                    started_at=store.clock() - timedelta(seconds=2),
+                    duration_s=1.0,
+                    seed=0,
+                )
+            )
+
+    def answer(self, position: int) -> None:
+        study = self.server.store.studies()[0].study
+        answers = {question.name: question.scale[0] for question in study.questions}
+        self.server.store.submit_responses(self.comparison(position).id, answers, self.server.store.clock())
+
+
+def participants_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
+    """Each page of a guided session, from consent to the last one."""
+    store, now = visit.server.store, visit.server.store.clock
+    yield "no link", visit.looks_at("/", "Please open your link")
+    visit.page.goto(visit.server.participant_url)
+    expect(visit.page.get_by_role("button", name="I agree")).to_be_visible(timeout=TIMEOUT_MS)
+    yield "consent", visit.page
+    visit.join()
+    page = visit.looks_at("/", "A few questions about you")
+    page.get_by_label("How old are you?").fill("7")
+    page.get_by_role("button", name="Continue").click()
+    expect(page.get_by_text("from 18 to 99")).to_be_visible()
+    yield "background", page
+    store.record_background(visit.who, {"years": "33"}, now())
+    yield "instructions", visit.looks_at("/", "What you will do")
+    yield "device", visit.looks_at("/?step=device", "How you guide the robot")
+    store.record_device(visit.who, visit.device)
+    yield "practice", visit.looks_at("/")
+    store.record_practice(visit.who, now())
+    yield "ready", visit.looks_at("/", "Next: compare two methods")
+    visit.begin(1)
+    yield "guide", visit.looks_at("/")
+    yield "stuck", says_stuck(visit)
+    visit.guide(1)
+    yield "questions", visit.looks_at("/?step=questions-1", "Comparison 1 of 3")
+    visit.answer(1)
+    yield "between", visit.looks_at("/", "Your answers are stored")
+    visit.begin(2)
+    visit.guide(2)
+    visit.answer(2)
+    yield "break", visit.looks_at("/", "Time for a break")
+    visit.begin(3)
+    visit.guide(3)
+    visit.answer(3)
+    yield "thanks", visit.looks_at("/", "Thank you")
+    store.withdraw(visit.who, "researcher", now())
+    yield "withdrawn", visit.looks_at("/", "Your data were deleted")
+
+
+def says_stuck(visit: Visit) -> Page:
+    """The page as the server tells it that the robot got stuck."""
+
+    def listen(socket: WebSocketRoute) -> None:
+        server = socket.connect_to_server()
+
+        def pass_on(message: str | bytes) -> None:
+            socket.send(message)
+            said = json.loads(message) if isinstance(message, str) else {}
+            if said.get("type") == "trial":
+                ended = {"slot": said["slot"], "trial": said["trial"], "outcome": "stuck", "next_in_s": 60.0}
+                socket.send(json.dumps({"type": "ended", **ended}))
+
+        server.on_message(pass_on)
+
+    visit.page.route_web_socket("**/live", listen)
+    page = visit.looks_at("/")
+    expect(page.get_by_role("heading", name="The robot is stuck")).to_be_visible(timeout=TIMEOUT_MS)
+    return page
+
+
+def researchers_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
+    """The console's door, and each page behind it."""
+    yield "door", visit.looks_at("/researcher", "Elbowroom console")
+    visit.page.get_by_label("Passphrase").fill("seven green apples")
+    visit.page.keyboard.press("Enter")
+    for name in CONSOLE_PAGES:
+        visit.page.get_by_role("link", name=name, exact=True).click()
+        if name != "Overview":
+            expect(visit.page.get_by_role("heading", name=name, level=1)).to_be_visible(timeout=TIMEOUT_MS)
+        visit.page.wait_for_timeout(1500)
+        yield name, visit.page
+
+
+def lab_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
+    """A robot in the lab: the participant's page, and the operator's."""
+    visit.join(starts=True)
+    yield "external", visit.looks_at("/", "Comparison 1 of 1")
+    visit.page.goto(visit.server.researcher_url)
+    visit.page.get_by_role("link", name="Operator").click()
+    expect(visit.page.get_by_role("heading", name="as method A")).to_be_visible(timeout=TIMEOUT_MS)
+    visit.page.wait_for_timeout(500)
+    yield "operator", visit.page
+
+
+def watching_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
+    """A robot that is only watched."""
+    visit.join(starts=True)
+    yield "watch", visit.looks_at("/")
+
+
+Pages = Callable[[Visit], Iterator[tuple[str, Page]]]
+
+
+def broken_rules(pages: Iterator[tuple[str, Page]]) -> dict[str, list[str]]:
+    """What axe calls serious or critical, by page; it looks into shadow roots as well."""
+    found = {}
+    for name, page in pages:
+        page.evaluate(AXE)
+        if broken := page.evaluate(RUN_AXE):
+            found[name] = broken
+    return found
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(
+    ("fixture", "pages"),
+    [
+        ("served", participants_pages),
+        ("served", researchers_pages),
+        ("lab", lab_pages),
+        ("server", watching_pages),
+    ],
+    ids=["participant", "researcher", "lab", "watching"],
+)
+def test_no_page_breaks_a_serious_rule(
+    chromium: "Browser", request: pytest.FixtureRequest, fixture: str, pages: Pages, scheme: "ColorScheme"
+) -> None:
+    visit = Visit(chromium, request.getfixturevalue(fixture), scheme)
+    assert broken_rules(pages(visit)) == {}
+    visit.context.close()
+
+
+class KeyboardHand:
+    """Holds the arrow keys that bring the hand to where the scripted hand would have it."""
+
+    ARROWS = (("ArrowLeft", 1, 0), ("ArrowRight", -1, 0), ("ArrowUp", 0, 1), ("ArrowDown", 0, -1))
+    NEAR_M = 0.006
+
+    def __init__(self, scene: Scene, study: Study) -> None:
+        self.scene, self.keyboard = scene, scene.page.keyboard
+        self.hand = ScriptedHand(study, pace_m_s=0.07)
+        self.held: set[str] = set()
+
+    def guide(self, seconds: float = math.inf) -> None:
+        """Guide for a while, or until the lap ends."""
+        state = self.scene.state
+        assert state is not None
+        trial, begun = state.trial, time.monotonic()
+        looked = begun
+        self.keyboard.press("Enter")
+        self.keyboard.press(" ")
+        while time.monotonic() - begun < min(seconds, TIMEOUT_MS / 1000):
+            state = self.scene.state
+            if state is None or state.trial != trial or state.has_ended:
+                break
+            view, now = state.view, time.monotonic()
+            wanted = self.hand.aim(view, max(now - looked, 1e-3))
+            looked = now
+            left, up = wanted.y_m - view.hand_y_m, wanted.z_m - view.hand_z_m
+            self.hold({key for key, y, z in self.ARROWS if y * left + z * up > self.NEAR_M})
+            self.scene.page.wait_for_timeout(20)
+        self.hold(set())
+        self.keyboard.press("Escape")
+
+    def hold(self, keys: set[str]) -> None:
+        for key in self.held - keys:
+            self.keyboard.up(key)
+        for key in keys - self.held:
+            self.keyboard.down(key)
+        self.held = keys
+
+
+class Keys:
+    """A person at the keyboard: moves on with Tab, and sees where they are."""
+
+    SEES = """(e) => {
+        for (let around = e, i = 0; around && i < 5; around = around.parentElement, i++) {
+          const { outlineStyle, outlineWidth } = getComputedStyle(around);
+          if (outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2) return true;
+        }
+        return false;
+    }"""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    def has_focus(self, goal: Locator) -> bool:
+        return bool(goal.evaluate("(e) => e.getRootNode().activeElement === e"))
+
+    def reach(self, goal: Locator, key: str = "Tab") -> None:
+        """Press a key until the goal has the focus; it must be seen to have it."""
+        expect(goal).to_be_visible(timeout=TIMEOUT_MS)
+        for _ in range(20):
+            if self.has_focus(goal):
+                break
+            self.page.keyboard.press(key)
+        expect(goal).to_be_focused()
+        assert goal.evaluate(self.SEES), "nobody sees where the focus is"
+
+    def press(self, name: str, key: str = "Enter") -> None:
+        self.reach(self.page.get_by_role("button", name=name))
+        self.page.keyboard.press(key)
+
+    def choose(self, group: str, option: str) -> None:
+        """To a radio group with Tab, and to its option with the arrows."""
+        options = self.page.get_by_role("radiogroup", name=group).get_by_role("radio")
+        expect(options.first).to_be_visible(timeout=TIMEOUT_MS)
+        for _ in range(20):
+            if any(self.has_focus(each) for each in options.all()):
+                break
+            self.page.keyboard.press("Tab")
+        chosen = options.and_(self.page.get_by_role("radio", name=option, exact=True))
+        if options.count() and self.has_focus(chosen) and not chosen.is_checked():
+            self.page.keyboard.press(" ")
+        for _ in range(options.count()):
+            if chosen.is_checked():
+                break
+            self.page.keyboard.press("ArrowRight")
+            self.page.wait_for_timeout(100)
+        expect(chosen).to_be_checked()
+        assert chosen.evaluate(self.SEES), "nobody sees where the focus is"
+
+
+def test_a_whole_session_by_the_keyboard_alone(chromium: "Browser", tmp_path: Path) -> None:
+    with serving(tmp_path, ONE_COMPARISON) as server:
+        context = chromium.new_context(viewport=SIZE)  # type: ignore[arg-type]
+        context.set_default_timeout(TIMEOUT_MS)
+        page, study = context.new_page(), server.store.studies()[0].study
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        keys, wall = Keys(page), page.get_by_label("Wall", exact=True)
+        practice = Scene(page, study.practice_study.maze)
+        page.goto(server.participant_url)
+        keys.press("I agree to take part")
+        keys.choose("Have you guided a robot by hand before?", "Often")
+        keys.reach(page.get_by_label("How old are you?"))
+        page.keyboard.type("33")
+        keys.press("Continue")
+        expect(page.get_by_role("heading", name="What you will do")).to_be_visible(timeout=TIMEOUT_MS)
+        keys.press("Continue", " ")
+        keys.choose("What do you guide it with?", "Keyboard")
+        keys.press("Continue")
+
+        keys.reach(wall)
+        wait_for_trial(practice, 0)
+        KeyboardHand(practice, study.practice_study).guide()
+        go_on = page.get_by_role("button", name="Continue")
+        expect(go_on).to_be_focused(timeout=TIMEOUT_MS)
+        keys.press("Continue")
+        expect(page.get_by_role("heading", name="Next: compare")).to_be_visible(timeout=TIMEOUT_MS)
+        scene = Scene(page, study.maze)
+        keys.press("Continue")
+
+        keys.reach(wall)
+        for slot, key in (("A", "1"), ("B", "2")):
+            page.keyboard.press(key)
+            expect(page.get_by_role("radio", name=f"Method {slot}", exact=True)).to_be_checked()
+            wait_for_trial(scene, scene.state.trial if slot == "B" and scene.state else 0)
+            KeyboardHand(scene, study).guide(2.5)
+        keys.press("Answer the questions")
+        keys.choose("Which method was the smoothest to use?", "B smoother")
+        keys.choose("Which method felt safest to use?", "About the same")
+        keys.press("Submit answers")
+        expect(page.get_by_role("heading", name="Thank you")).to_be_visible(timeout=TIMEOUT_MS)
+        context.close()
+        assert errors == []
+        (person,) = server.store.participants(server.store.studies()[0])
+        assert (person.device, person.background["years"]) == ("keyboard", "33")
+        (comparison,) = server.store.comparisons(server.store.studies()[0])
+        assert {r.question: r.answer for r in server.store.responses(comparison.id)} == {
+            "Q1": "B>A", "Q2": "A=B",
+        }  # fmt: skip
+        trials = server.store.trials(comparison=comparison.id)
+        assert {trial.slot for trial in trials} == {"A", "B"}
+        assert all(trial.metrics["latency_samples"] > 10 for trial in trials)
