@@ -13,6 +13,7 @@ from app.cli import (
     load,
     power,
     report,
+    reproduce,
     serve,
     simulate,
     study,
@@ -37,6 +38,7 @@ cli.command("sweep")(sweep.sweep)
 cli.command("power")(power.power)
 cli.command("load")(load.load)
 cli.command("calibrate")(calibrate.calibrate)
+cli.command("reproduce")(reproduce.reproduce)
 cli.command("report")(report.report)
 cli.command("export")(exchange.export)
 cli.command("import")(exchange.import_)

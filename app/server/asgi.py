@@ -49,7 +49,7 @@ def build_app(desk: Desk) -> App:
             WebSocketRoute(route.PATH, route.LiveRoute()),
             Mount("/stage", StageModules(directory=_APP / "stage" / "modules")),
         ],
-        middleware=[Middleware(Guard)],
+        middleware=[Middleware(Guard, public_url=desk.public_url)],
         lifespan=open_hours,
     )
 

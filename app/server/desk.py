@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from app.server.laps import LapKeeper
 from app.server.live.sessions import LiveSessions
+from app.server.public_url import PublicUrl
 from data.records import Clock
 from data.store import Store, StoredStudy
 from data.study import Study
@@ -13,7 +14,8 @@ from data.study import Study
 class Desk:
     """The study on offer, the store it goes to, the laps that are shown and the robots in people's hands.
 
-    ``live`` is None where participants don't guide the robot themselves.
+    ``live`` is None where participants don't guide the robot themselves, ``public_url`` where browsers reach
+    the server at the address it listens on.
 
     Streamlit runs its script anew for every click and gives it no argument, so the desk is kept in this
     module: `open_desk` puts it there before the first request, `desk` hands it out.
@@ -23,6 +25,7 @@ class Desk:
     store: Store
     laps: LapKeeper
     live: LiveSessions | None = None
+    public_url: PublicUrl | None = None
 
     @property
     def study(self) -> Study:

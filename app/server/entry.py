@@ -12,6 +12,7 @@ from app.server.desk import desk
 from app.server.visitors import (
     PARTICIPANT_COOKIE,
     RESEARCHER_COOKIE,
+    give_cookie,
     new_participant_cookie,
     new_researcher_cookie,
     visitor,
@@ -64,8 +65,7 @@ def _refused(title: str, text: str) -> Response:
 
 
 def _with_cookie(response: Response, name: str, value: str, days: int) -> Response:
-    # Lax, not strict: a strict cookie would not come along after a click on a link in a mail.
-    response.set_cookie(name, value, max_age=days * 86_400, path="/", httponly=True, samesite="lax")
+    give_cookie(response, desk(), name, value, days)
     return response
 
 

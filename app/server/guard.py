@@ -6,6 +6,9 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.server.access_log import LOG
+from app.server.public_url import PublicUrl
+
 _READS = {"GET", "HEAD", "OPTIONS"}
 _POLICY = "; ".join(
     (
@@ -37,8 +40,9 @@ _HEADERS = {
 class Guard:
     """ASGI middleware around everything, Streamlit's own routes included."""
 
-    def __init__(self, app: ASGIApp) -> None:
+    def __init__(self, app: ASGIApp, public_url: PublicUrl | None = None) -> None:
         self._app = app
+        self._public_url = public_url
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse what comes from elsewhere; add the headers to what goes out."""
@@ -46,7 +50,9 @@ class Guard:
             await self._app(scope, receive, send)
             return
         writes = scope["type"] == "websocket" or scope["method"] not in _READS
-        if writes and not is_own_origin(Headers(scope=scope)):
+        headers = Headers(scope=scope)
+        if writes and not is_own_origin(headers, self._public_url):
+            self._note(headers)
             if scope["type"] == "websocket":
                 await receive()
                 await send({"type": "websocket.close", "code": 1008})
@@ -56,18 +62,31 @@ class Guard:
 
         async def send_guarded(message: Message) -> None:
             if message["type"] == "http.response.start":
-                headers = MutableHeaders(scope=message)
+                outgoing = MutableHeaders(scope=message)
                 for name, value in _HEADERS.items():
-                    headers[name] = value
+                    outgoing[name] = value
             await send(message)
 
         await self._app(scope, receive, send_guarded)
 
+    def _note(self, headers: Headers) -> None:
+        """Tell whoever runs the server why pages stay empty behind a proxy: a wrong or missing address."""
+        origin = headers.get("origin", "")
+        if origin:
+            own = self._public_url.origin if self._public_url else headers.get("host", "")
+            LOG.warning("refused a request from the Origin %.100r, not %.100r: see --public-url", origin, own)
 
-def is_own_origin(headers: Headers) -> bool:
-    """Whether a request comes from a page of the very host it goes to. No Origin is no proof."""
+
+def is_own_origin(headers: Headers, public_url: PublicUrl | None = None) -> bool:
+    """Whether a request comes from one of our own pages. No Origin is no proof.
+
+    Ours are the pages at the public address, if there is one, else those of the very host that is asked.
+    """
+    origin = headers.get("origin", "")
+    if public_url is not None:
+        return origin == public_url.origin
     try:
-        origin = urlsplit(headers.get("origin", "")).netloc
+        host = urlsplit(origin).netloc
     except ValueError:
         return False
-    return origin != "" and origin == headers.get("host")
+    return host != "" and host == headers.get("host")

@@ -21,7 +21,7 @@ from starlette.routing import Route
 
 from app.server.access_log import LOG
 from app.server.desk import Desk, desk
-from app.server.visitors import RESEARCHER_COOKIE, new_token
+from app.server.visitors import RESEARCHER_COOKIE, give_cookie, new_token
 from data.errors import InputError
 from data.records import Clock
 from data.store import token_sha256
@@ -153,9 +153,7 @@ async def knock(request: Request) -> Response:
         return _refusal("This is not the passphrase.", 403)
     cookie = await run_in_threadpool(_admit, desk())
     answer = RedirectResponse("/overview", status_code=303, headers={"cache-control": "no-store"})
-    answer.set_cookie(
-        RESEARCHER_COOKIE, cookie, max_age=_COOKIE_DAYS * 86_400, path="/", httponly=True, samesite="lax"
-    )
+    give_cookie(answer, desk(), RESEARCHER_COOKIE, cookie, _COOKIE_DAYS)
     return answer
 
 

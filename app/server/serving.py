@@ -6,11 +6,15 @@ import sys
 from pathlib import Path
 from types import FrameType
 
+from app.server.public_url import PublicUrl, parse_public_url
 from data.errors import ElbowroomError, InputError
 from data.store import Store, StoredStudy, token_sha256
 from data.store.links import LinkKind
 
 _WILDCARDS = ("", "0.0.0.0", "::")
+_PROXIES = ["127.0.0.1", "::1"]
+_ELSEWHERE = {socket.AF_INET: "198.51.100.1", socket.AF_INET6: "2001:db8::1"}
+"""Addresses that are nobody's (RFC 5737, RFC 3849): nothing is ever sent to them."""
 _GOODBYE_S = 3
 _MOST_LAP_WORKERS = 4
 _SWITCH_S = 0.0005
@@ -23,6 +27,7 @@ def serve(
     port: int = 8501,
     workers: int | None = None,
     passphrase: str | None = None,
+    public_url: str | None = None,
 ) -> None:
     """Serve a study until SIGINT or SIGTERM.
 
@@ -41,11 +46,14 @@ def serve(
         more finish their laps.
     passphrase : str, optional
         Opens the console beside the one-time link.
+    public_url : str, optional
+        Where browsers reach the server, if a proxy stands before it: links begin with it, writes come from
+        there alone, and a proxy on this machine is believed in whose name it asks.
 
     Raises
     ------
     InputError
-        If the study or the store's address is wrong.
+        If the study, the store's address or the public one is wrong.
     ElbowroomError
         If the store or the port cannot be had.
     """
@@ -53,15 +61,23 @@ def serve(
     from app.studies import check_can_be_run, open_study
 
     # A wrong mode or a maze out of reach is found now, not when a participant waits for a lap.
+    public = parse_public_url(public_url) if public_url is not None else None
     opened = open_study(study_source)
     check_can_be_run(opened.study, str(study_source))
     listener = _listen(host, port)
     with listener, Store.open(store_url) as store:
         set_passphrase(passphrase, store.clock)
-        _run(listener, store, store.add_study(opened.study, opened.text), host, workers)
+        _run(listener, store, store.add_study(opened.study, opened.text), host, workers, public)
 
 
-def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, workers: int | None) -> None:
+def _run(
+    listener: socket.socket,
+    store: Store,
+    stored: StoredStudy,
+    host: str,
+    workers: int | None,
+    public_url: PublicUrl | None,
+) -> None:
     import os
 
     import uvicorn
@@ -74,7 +90,7 @@ def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, 
     from app.server.live.socket import LiveSocket
     from app.server.settings import apply_settings
 
-    apply_settings()
+    apply_settings(public_url)
     # So often does a page's script that computes hand the interpreter over: states that wait to be passed on
     # must not wait for the usual 5 ms each time.
     sys.setswitchinterval(_SWITCH_S)
@@ -84,8 +100,9 @@ def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, 
         stored.study, store.recordings_folder, min((size + 1) // 2 if is_guided else size, _MOST_LAP_WORKERS)
     )
     live = LiveSessions(stored.study, store, laps.pool, size) if is_guided else None
-    app = build_app(Desk(stored, store, laps, live))
-    base = f"http://{_shown(host)}:{listener.getsockname()[1]}"
+    app = build_app(Desk(stored, store, laps, live, public_url))
+    own = f"http://{shown_host(host)}:{listener.getsockname()[1]}"
+    base = public_url.origin if public_url is not None else own
     lines = (
         f"participant: {base}/join/{_new_link(store, stored, 'participant')}",
         f"researcher: {base}/researcher/{_new_link(store, stored, 'researcher')}",
@@ -102,6 +119,8 @@ def _run(listener: socket.socket, store: Store, stored: StoredStudy, host: str, 
         log_config=LOGGING,
         timeout_graceful_shutdown=_GOODBYE_S,
         server_header=False,
+        proxy_headers=public_url is not None,
+        forwarded_allow_ips=_PROXIES,
         ws=LiveSocket,
         ws_max_size=1 << 20,
     )
@@ -140,11 +159,22 @@ def _listen(host: str, port: int) -> socket.socket:
     return listener
 
 
-def _shown(host: str) -> str:
-    """How a browser on this machine names the host."""
+def shown_host(host: str) -> str:
+    """How a browser names the host it listens on: by this machine's address in its network, if on all."""
     if host in _WILDCARDS:
-        return "127.0.0.1"
+        host = _network_address(socket.AF_INET6 if host == "::" else socket.AF_INET) or "127.0.0.1"
     return f"[{host}]" if ":" in host else host
+
+
+def _network_address(family: socket.AddressFamily) -> str | None:
+    """The address from which this machine would speak to others; None if it is in no network."""
+    with socket.socket(family, socket.SOCK_DGRAM) as probe:
+        try:
+            # "Connecting" a datagram socket looks up the route and sends nothing.
+            probe.connect((_ELSEWHERE[family], 9))
+            return str(probe.getsockname()[0])
+        except OSError:
+            return None
 
 
 def _stop_quietly() -> None:

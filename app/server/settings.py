@@ -1,5 +1,7 @@
 """Streamlit's options, set by the program: no file or variable of the place it is started from decides."""
 
+from app.server.public_url import PublicUrl
+
 LIGHT = {
     "backgroundColor": "#FAFAF8",
     "secondaryBackgroundColor": "#F1F2EF",
@@ -39,9 +41,12 @@ OPTIONS: dict[str, object] = {
 }
 
 
-def apply_settings() -> None:
+def apply_settings(public_url: PublicUrl | None = None) -> None:
     """Set the options; before the app is built, which reads some of them once."""
     from streamlit import config
 
     for name, value in OPTIONS.items():
         config.set_option(name, value)
+    if public_url is not None:
+        # Streamlit compares Origin with Host as well, and a proxy may have changed Host.
+        config.set_option("browser.serverAddress", public_url.host)

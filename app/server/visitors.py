@@ -9,6 +9,8 @@ import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from starlette.responses import Response
+
 from app.server.desk import Desk
 from data.records import Comparison, Participant
 from data.schedule import plan_session
@@ -101,10 +103,15 @@ def _participant_id(desk: Desk, cookie: str) -> str:
 
 
 def _withdrawn(desk: Desk, cookie: str) -> Participant | None:
-    """Who agreed with this cookie and was withdrawn: that ends the session, and must not begin another."""
-    own_id = _participant_id(desk, cookie)
+    """Who agreed with this cookie and was withdrawn: that ends the session, and must not begin another.
+
+    With a personal link it is whoever the link is of, in any browser that followed it.
+    """
+    hashed = token_sha256(cookie.partition(".")[0])
+    theirs = {link.participant for link in desk.store.links(desk.stored_study) if link.token_sha256 == hashed}
+    theirs.add(_participant_id(desk, cookie))
     everyone = desk.store.participants(desk.stored_study, source="human")
-    return next((one for one in everyone if one.id == own_id and one.withdrawn_at is not None), None)
+    return next((one for one in everyone if one.id in theirs and one.withdrawn_at is not None), None)
 
 
 def new_researcher_cookie(desk: Desk, token: str) -> str:
@@ -121,6 +128,15 @@ def new_researcher_cookie(desk: Desk, token: str) -> str:
         desk.store.open_session(token_sha256(cookie), study, None, desk.clock())
         desk.store.log("researcher", "open console", {"study": study.label}, desk.clock())
     return cookie
+
+
+def give_cookie(response: Response, desk: Desk, name: str, value: str, days: int) -> None:
+    """Have the browser keep a cookie that no script reads; over TLS alone where browsers come by TLS."""
+    is_secure = desk.public_url is not None and desk.public_url.is_secure
+    # Lax, not strict: a strict cookie would not come along after a click on a link in a mail.
+    response.set_cookie(
+        name, value, max_age=days * 86_400, path="/", secure=is_secure, httponly=True, samesite="lax"
+    )
 
 
 def is_researcher(desk: Desk, cookies: Mapping[str, str]) -> bool:

@@ -132,14 +132,14 @@ Start = Callable[[str], Server]
 
 
 @contextmanager
-def serving(folder: Path, study: str) -> Iterator[Server]:
+def serving(folder: Path, study: str, *options: str) -> Iterator[Server]:
     """Run ``elbowroom serve`` on a free port, until the block ends."""
     (folder / "study.toml").write_text(study, encoding="utf-8")
     command = [sys.executable, "-m", "app.cli", "serve", "--study", "study.toml", "--store", "study.sqlite"]
     log = folder / "log.txt"
     with log.open("w") as errors:
         process = subprocess.Popen(
-            [*command, "--port", "0", "--workers", "1"],
+            [*command, "--port", "0", "--workers", "1", *options],
             cwd=folder,
             stdout=subprocess.PIPE,
             stderr=errors,

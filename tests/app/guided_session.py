@@ -175,14 +175,14 @@ def lead_on(page: Page, goal: Locator, pictures: Path | None = None) -> None:
     end = time.monotonic() + TIMEOUT_MS / 1000
     while not goal.is_visible():
         assert time.monotonic() < end, f"{goal} never came"
-        if go_on.count() == 1 and go_on.is_enabled():
-            title = page.get_by_role("heading").first.inner_text()
-            if title not in seen:
-                picture(page, pictures, f"page_{len(seen)}_{title.lower().replace(' ', '_')[:24]}")
-                seen.add(title)
-                # The page may have turned meanwhile.
-                with suppress(TimeoutError):
+        # The page may turn at any of these steps.
+        with suppress(TimeoutError):
+            if go_on.count() == 1 and go_on.is_enabled(timeout=500):
+                title = page.get_by_role("heading").first.inner_text(timeout=500)
+                if title not in seen:
+                    picture(page, pictures, f"page_{len(seen)}_{title.lower().replace(' ', '_')[:24]}")
                     go_on.click(timeout=2000)
+                    seen.add(title)
         page.wait_for_timeout(100)
 
 

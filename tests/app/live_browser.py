@@ -142,11 +142,12 @@ class LiveBrowser:
         return self.close_code
 
     def open(self, slot: str) -> dict[str, Any]:
+        """Turn to a slot; a server that has just started compiles before a trial begins."""
         self.tell("open", slot=slot)
-        return self.until("trial")
+        return self.until("trial", 90.0)
 
     def wait_for_the_robot(self) -> None:
-        """Until the first state comes: a server that has just started compiles first."""
+        """Until the first state comes."""
         end = time.monotonic() + 90.0
         while self.state is None and time.monotonic() < end:
             self.read(1.0)

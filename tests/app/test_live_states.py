@@ -4,7 +4,7 @@ import asyncio
 import json
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -61,11 +61,13 @@ class NotedCrew(Crew):
         self.modes: list[str] = []
         self.has_workers = True
 
+    @property
+    def is_ready(self) -> bool:
+        return self.has_workers
+
     def begin(
         self, follower: Follower, *, trial: int, mode: str, lap: int, is_practice: bool
     ) -> Handle | None:
-        if not self.has_workers:
-            return None
         self.trials.append(NotedHandle(follower, trial))
         self.modes.append(mode)
         return self.trials[-1]
@@ -253,6 +255,79 @@ def test_after_a_withdrawal_nothing_more_is_stored(play: Play) -> None:
         await until(lambda: bool(scene.settled))
         assert told(window)[-1] == "moved"
         assert scene.store.trials() == ()
+
+    play(plot)
+
+
+def test_a_full_disk_is_waited_for_and_the_page_is_told_only_then(
+    play: Play, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def plot(scene: Scene) -> None:
+        window = scene.window()
+        scene.session.open("A")
+        scene.hold()
+        folder = scene.store.recordings_folder
+        folder.rmdir()
+        # Nobody can write into a folder that is a file.
+        folder.touch()
+        scene.session.finish()
+        await until(lambda: "file exists" in caplog.text)
+        await asyncio.sleep(0.1)
+        assert told(window) == ["welcome", "trial"]
+        assert scene.store.trials() == ()
+        folder.unlink()
+        folder.mkdir()
+        await until(lambda: "finished" in told(window))
+        (trial,) = scene.store.trials(comparison="p1.c1")
+        assert trial.outcome == "abandoned"
+        assert scene.store.recording_path(trial).is_file()
+
+    play(plot)
+
+
+def test_a_lap_that_cannot_be_finished_still_counts_for_how_long_it_took(play: Play) -> None:
+    async def plot(scene: Scene) -> None:
+        window = scene.window()
+        scene.session.open("A")
+        scene.hold()
+        seen = bytes(16) + np.float32(2.5).tobytes() + bytes(60)
+        scene.session.on_state(scene.session._turn, seen, 300, 12)  # type: ignore[arg-type]
+        broken = LapInputs(np.zeros((50, 4), np.int16), np.ones(50, np.uint8), COMPLETED)
+        scene.crew.trials[0].follower.on_ending(Ending(1, 50, 0, broken))
+        scene.session.finish()
+        await until(lambda: "finished" in told(window))
+        (trial,) = scene.store.trials(comparison="p1.c1")
+        assert (trial.outcome, trial.duration_s, trial.recording) == ("failed", 2.5, None)
+
+    play(plot)
+
+
+def test_nothing_begins_once_the_study_s_hours_are_over(play: Play) -> None:
+    async def plot(scene: Scene) -> None:
+        window = scene.window()
+        scene.session.open("A")
+        protocol = STUDY.protocol.model_copy(update={"returning_within_h": 2.0})
+        scene.session._study = STUDY.model_copy(update={"protocol": protocol})
+        scene.session._clock = lambda: NOW + timedelta(hours=2)
+        scene.session.open("B")
+        assert scene.crew.modes == [scene.comparison.mode_a]
+        assert told(window)[-1] == "moved"
+        await until(lambda: bool(scene.settled))
+
+    play(plot)
+
+
+def test_what_was_read_before_a_trial_was_stored_does_not_take_it_back(play: Play) -> None:
+    async def plot(scene: Scene) -> None:
+        scene.window()
+        scene.session.open("A")
+        scene.hold()
+        scene.session.open("B")
+        await until(lambda: scene.store.trials() != () and scene.session._ledger.is_idle)
+        window = scene.window()
+        assert told(window) == ["welcome"]
+        (welcome,) = (json.loads(text) for text in window._messages if isinstance(text, str))
+        assert welcome["exposure"]["A"] == pytest.approx(50 * 0.008)
 
     play(plot)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from app.server.visitors import PARTICIPANT_COOKIE, admit, new_participant_cookie, visitor
-from data.store import LinkRefused
+from data.store import LinkRefused, token_sha256
 
 from .participant_study import guest
 
@@ -35,3 +35,19 @@ def test_another_browser_with_the_same_link_is_someone_else(tmp_path: Path) -> N
         found = visitor(here.desk, {PARTICIPANT_COOKIE: cookie})
         assert found is not None
         assert found.participant is None
+
+
+def test_a_personal_link_leads_to_the_withdrawn_in_every_browser_that_followed_it(tmp_path: Path) -> None:
+    with guest(tmp_path) as here:
+        here.store.create_link("personal", here.desk.stored_study, token_sha256("own"))
+        first, second = (new_participant_cookie(here.desk, "own") for _ in range(2))
+        assert first is not None
+        assert second is not None
+        who = admit(here.desk, first)
+        third = new_participant_cookie(here.desk, "own")
+        here.store.withdraw(who.id, "researcher")
+        for cookie in (first, second, third):
+            found = visitor(here.desk, {PARTICIPANT_COOKIE: str(cookie)})
+            assert found is not None
+            assert found.participant is not None
+            assert found.participant.id == who.id

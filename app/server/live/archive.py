@@ -7,6 +7,7 @@ there is to keep, and the browser is told only then.
 import asyncio
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, TypeVar
@@ -144,6 +145,7 @@ class Archive:
         self._store = store
         self._pool = pool
         self._is_closing = False
+        self._alone = asyncio.Lock()
 
     def close(self) -> None:
         """From now on give up what is refused."""
@@ -193,15 +195,17 @@ class Archive:
         if inputs is None:
             return None
         mode = finished.comparison.mode_of(finished.slot)
-        path = self._store.recordings_folder / f"{finished.id}.parquet"
 
         async def replay() -> GuidedLap | None:
-            for _ in range(_MOST_CRASHES):
-                try:
-                    job = self._pool.submit(finish_lap, self._study, mode, inputs, finished.lap, path)
-                    return await asyncio.wrap_future(job)
-                except BrokenProcessPool:
-                    LOG.error("trial %s: the process that finished it is gone", finished.id)
+            path = self._store.recordings_folder / f"{finished.id}.parquet"
+            for crashes in range(_MOST_CRASHES):
+                # Laps that were under way at a crash are run one by one: only one of them may be to blame.
+                async with self._alone if crashes else nullcontext():
+                    try:
+                        job = self._pool.submit(finish_lap, self._study, mode, inputs, finished.lap, path)
+                        return await asyncio.wrap_future(job)
+                    except BrokenProcessPool:
+                        LOG.error("trial %s: the process that finished it is gone", finished.id)
             return None
 
         attempt = 0
@@ -213,6 +217,10 @@ class Archive:
                 # What differs once it is run again always will; a full disk may have room later.
                 if isinstance(error, InputError | ReplayError) or self._is_closing:
                     return None
+            except Exception:
+                # Whatever it is, for how long the robot was in hand is known, and counts.
+                LOG.exception("trial %s cannot be finished", finished.id)
+                return None
             await asyncio.sleep(_PAUSES_S[min(attempt, len(_PAUSES_S) - 1)])
             attempt += 1
 

@@ -1,4 +1,8 @@
-"""The live workers as the web process sees them: the least busy gets a new trial, a dead one is replaced."""
+"""The live workers as the web process sees them: the least busy gets a new trial.
+
+One that is dead is replaced, and so is one that hangs: a worker with trials says something at least twice a
+second.
+"""
 
 import asyncio
 import itertools
@@ -18,6 +22,10 @@ _MOST_UNREAD = 1 << 20
 _PATIENCE_S = 1.0
 """A worker that replaces one which hardly lived starts after a pause [s]."""
 _GOODBYE_S = 5.0
+_LOOK_S = 0.5
+_MOST_SILENT_LOOKS = 4
+"""A worker that has trials and was silent between so many looks hangs. Looks are counted rather than
+seconds, so that nobody is to blame for what passes while the whole machine sleeps."""
 
 
 class Follower(Protocol):
@@ -62,6 +70,8 @@ class Member(asyncio.Protocol):
     def __init__(self, crew: "Crew", study: Study) -> None:
         self.followers: dict[int, Follower] = {}
         self.is_ready = False
+        self._was_heard = False
+        self._silent_looks = 0
         self._crew = crew
         self._inbox = Inbox()
         self._transport: asyncio.WriteTransport | None = None
@@ -90,6 +100,14 @@ class Member(asyncio.Protocol):
             return
         transport.write(content)
 
+    def look(self) -> None:
+        """See whether it does its work; kill it if it has not for long."""
+        self._silent_looks = 0 if self._was_heard or not self.followers else self._silent_looks + 1
+        self._was_heard = False
+        if self._silent_looks >= _MOST_SILENT_LOOKS:
+            LOG.error("a live worker hangs (%s)", self.process.pid)
+            self.process.kill()
+
     def hang_up(self) -> None:
         """Let it go home."""
         if self._transport is not None:
@@ -102,6 +120,7 @@ class Member(asyncio.Protocol):
 
     def data_received(self, data: bytes) -> None:
         """asyncio: it tells something."""
+        self._was_heard = True
         for kind, content in self._inbox.take(data):
             if kind == Tidings.STATE:
                 run, ticks, skipped = channel.PROGRESS.unpack_from(content)
@@ -146,30 +165,42 @@ class Crew:
         self._numbers = itertools.count(1)
         self._is_open = False
         self._hirings: set[asyncio.Task[None]] = set()
+        self._next_look: asyncio.TimerHandle | None = None
 
     async def start(self) -> None:
         """Start the workers; they compile what they need while others start."""
         self._is_open = True
         for _ in range(self.size):
-            await self._hire(0.0)
+            await self._hire()
+        self._look()
 
     async def close(self) -> None:
         """Let all workers go; trials under way are lost."""
         self._is_open = False
+        if self._next_look is not None:
+            self._next_look.cancel()
         for hiring in self._hirings:
             hiring.cancel()
         leaving = list(self._members)
         for member in leaving:
             member.hang_up()
+            if not member.is_ready:
+                # It compiles, and would not notice for long.
+                member.process.kill()
         for member in leaving:
             await asyncio.to_thread(member.process.join, _GOODBYE_S)
             if member.process.is_alive():
                 member.process.kill()
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether a trial can be had at once."""
+        return any(member.is_ready for member in self._members)
+
     def begin(
         self, follower: Follower, *, trial: int, mode: str, lap: int, is_practice: bool
     ) -> Handle | None:
-        """Start a trial on the least busy worker; None if there is none just now.
+        """Start a trial on the least busy worker; None if none is ready just now.
 
         Parameters
         ----------
@@ -178,10 +209,10 @@ class Crew:
         mode : str
             Name of one of the study's modes.
         """
-        at_hand = sorted(self._members, key=lambda member: (not member.is_ready, len(member.followers)))
-        if not at_hand:
+        ready = [member for member in self._members if member.is_ready]
+        if not ready:
             return None
-        member, run = at_hand[0], next(self._numbers)
+        member, run = min(ready, key=lambda member: len(member.followers)), next(self._numbers)
         member.followers[run] = follower
         member.tell(channel.pickled(Order.BEGIN, Beginning(run, trial, mode, lap, is_practice)))
         return Handle(member, run)
@@ -193,12 +224,29 @@ class Crew:
         if not self._is_open:
             return
         LOG.error("a live worker is gone (%s); a new one takes over", member.process.pid)
-        hiring = asyncio.ensure_future(self._hire(0.0 if member.is_ready else _PATIENCE_S))
+        hiring = asyncio.ensure_future(self._replace(0.0 if member.is_ready else _PATIENCE_S))
         self._hirings.add(hiring)
         hiring.add_done_callback(self._hirings.discard)
 
-    async def _hire(self, pause_s: float) -> None:
-        await asyncio.sleep(pause_s)
+    async def _replace(self, pause_s: float) -> None:
+        """Hire another, as soon as the machine has room for one."""
+        while True:
+            await asyncio.sleep(pause_s)
+            try:
+                await self._hire()
+            except OSError as error:
+                LOG.error("no new live worker can be started yet: %s", error)
+                pause_s = _PATIENCE_S
+            else:
+                return
+
+    async def _hire(self) -> None:
         member = Member(self, self._study)
         await member.connect()
         self._members.append(member)
+
+    def _look(self) -> None:
+        """Look at all workers, now and again."""
+        for member in self._members:
+            member.look()
+        self._next_look = asyncio.get_running_loop().call_later(_LOOK_S, self._look)

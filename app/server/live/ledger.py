@@ -77,6 +77,11 @@ class Ledger:
         """The comparison was begun anew: what counts starts from what is stored of it."""
         self.comparison, self.slot, self.laps = comparison, standing.slot, dict(standing.laps)
 
+    def see(self, standing: Standing) -> None:
+        """What was read of the store; a trial may have been stored since it was."""
+        if sum(standing.numbers.values()) >= sum(self.standing.numbers.values()):
+            self.standing = standing
+
     def note_turn(self, slot: Slot) -> None:
         """The participant turned to a slot."""
         if slot == self.slot:

@@ -17,6 +17,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Literal
 
+from app.participant.progress import may_still_take_part
 from app.server.access_log import LOG
 from app.server.live.archive import Archive, Standing
 from app.server.live.board import LiveRow
@@ -38,7 +39,7 @@ PAUSE_S: dict[Outcome, float] = {"completed": 1.5, "stuck": 4.0, "failed": 4.0, 
 MOST_KEPT = 2000
 """So many trials and switches of one comparison are kept: nobody makes more by hand."""
 
-_HIRING_S = 0.5
+_HIRING_S = 0.2
 _TRIALS_PER_S, _TRIALS_AT_ONCE = 1.0, 8.0
 
 Phase = Literal["idle", "running", "pausing"]
@@ -114,7 +115,7 @@ class Session:
         if comparison is not None and comparison != self.comparison:
             self._give_up_trial()
             self._ledger.begin_anew(comparison, standing)
-        self._ledger.standing = standing
+        self._ledger.see(standing)
         self.is_over = False
         self._connection, self._since = connection, self._clock()
         self._is_followed = self._wants_finish = False
@@ -124,8 +125,8 @@ class Session:
                 "type": "welcome",
                 "practice": self.comparison is None,
                 "slot": self._ledger.slot,
-                "exposure": standing.told_exposure,
-                "laps": standing.laps,
+                "exposure": self._ledger.standing.told_exposure,
+                "laps": self._ledger.standing.laps,
             }
         )
 
@@ -225,8 +226,14 @@ class Session:
             self._refuse()
             return
         study, comparison = self._study, self.comparison
+        if not may_still_take_part(study, self.participant, self._clock()):
+            self.dismiss()
+            return
         mode = study.practice_mode if comparison is None else comparison.mode_of(slot)
         self._phase = "pausing"
+        if not self._crew.is_ready:
+            self._later(_HIRING_S, slot)
+            return
         if not self._starts.take():
             self._later(1.0 / _TRIALS_PER_S, slot)
             return

@@ -71,8 +71,12 @@ class LiveSessions:
     async def enter(self, participant: Participant, connection: Connection) -> Session | None:
         """The session of a participant who opens a window; None if nothing is open for them."""
         async with self._entries[participant.id]:
-            place = await run_in_threadpool(self._place, participant.id)
-            present = self._sessions.get(participant.id)
+            while True:
+                present = self._sessions.get(participant.id)
+                place = await run_in_threadpool(self._place, participant.id)
+                # A session that ended meanwhile has stored its last trial: too late for what was read.
+                if present is self._sessions.get(participant.id):
+                    break
             if place is None:
                 if present is not None:
                     present.dismiss()

@@ -8,11 +8,13 @@ never moved in fast motion.
 
 import gc
 import select
+import signal
 import socket
 import sys
 import time
 from contextlib import suppress
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING
 
 from app.server.live import channel
@@ -32,6 +34,8 @@ MOST_TICKS = 2
 """The most control ticks that are taken at once."""
 
 _NICENESS = -10
+_IDLE_S = 1.0
+"""So often a worker without trials looks whether it was told to go [s]."""
 _MOST_UNSENT = 1 << 18
 """States are left out while so many bytes wait to be sent."""
 _READ = 1 << 16
@@ -50,6 +54,7 @@ def work(connection: socket.socket, study: "Study") -> None:
     gc.disable()
     # Only the thread that follows the parent is there beside this one, and it waits.
     sys.setswitchinterval(1.0)
+    signal.signal(signal.SIGTERM, worker.leave)
     worker.run()
 
 
@@ -64,6 +69,7 @@ class Worker:
         self._unsent = bytearray()
         self._runs: dict[int, LiveRun] = {}
         self._is_open = True
+        self._is_leaving = False
         self._ticks = 0
 
     def warm_up(self) -> None:
@@ -78,19 +84,27 @@ class Worker:
         list(run.news(0, may_leave_out=False))
         self._send([channel.message(Tidings.READY, b"")])
 
+    def leave(self, number: int = signal.SIGTERM, frame: FrameType | None = None) -> None:
+        """Give up all laps, hand them over and go: what stops a server may tell each of its processes."""
+        del number, frame
+        self._is_leaving = True
+
     def run(self) -> None:
-        """Take ticks while there are trials, else wait; until the web process hangs up."""
+        """Take ticks while there are trials, else wait; until the web process hangs up, or it is to leave."""
         due = time.monotonic()
-        while self._is_open:
+        while self._is_open and not (self._is_leaving and not self._runs and not self._unsent):
             if not self._runs:
                 gc.collect()
                 writers = [self._connection] if self._unsent else []
-                select.select([self._connection], writers, [])
+                select.select([self._connection], writers, [], _IDLE_S)
                 self._send([])
                 due = time.monotonic() + TICK_S
             else:
                 time.sleep(max(due - time.monotonic(), 0.0))
             self._read()
+            if self._is_leaving:
+                for run in self._runs.values():
+                    run.trial.abandon()
             now = time.monotonic()
             late = int((now - due) / TICK_S) + 1 if now >= due else 0
             if late and self._runs:
