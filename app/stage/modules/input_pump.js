@@ -8,6 +8,7 @@ export class InputPump {
   constructor(send) {
     this.send = send;
     this.sent = -Infinity;
+    this.told = -Infinity; // when the last change was sent: heartbeats between don't hold the next one up
     this.changed = null;
     this.pending = 0;
     this.beating = 0;
@@ -33,7 +34,7 @@ export class InputPump {
     if (!this.beating) return;
     this.changed ??= at;
     if (this.pending) return;
-    const wait = this.sent + LEAST_GAP_MS - performance.now();
+    const wait = this.told + LEAST_GAP_MS - performance.now();
     if (wait <= 0) this.#send();
     else this.pending = setTimeout(() => this.#send(), wait);
   }
@@ -48,6 +49,7 @@ export class InputPump {
     this.pending = 0;
     this.sent = performance.now();
     const since = Math.min(this.changed ?? this.sent, this.sent);
+    if (this.changed !== null) this.told = this.sent;
     this.changed = null;
     this.send(this.sent, since);
   }
