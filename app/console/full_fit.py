@@ -14,12 +14,12 @@ from dataclasses import dataclass
 from datetime import datetime
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 from app.server.desk import Desk
 from app.server.worker_process import be_a_worker
 from data.errors import ElbowroomError
-from data.responses import ResponseTable, StuckTable
+from data.responses import LagTable, MetricTable, ResponseTable, StuckTable
 from data.study import Study
 
 _NICENESS = 10
@@ -84,8 +84,7 @@ class FullFit:
         with self._lock:
             if self.state == "running":
                 return
-            table = desk.store.responses_table(desk.stored_study, include_simulated)
-            stuck = desk.store.stuck_table(desk.stored_study, include_simulated)
+            evidence = _Evidence.of(desk, include_simulated)
             is_blinded = not desk.store.is_unblinded(desk.stored_study)
             detail = {"study": desk.stored_study.label, "blinded": "yes" if is_blinded else "no"}
             desk.store.log("researcher", "full fit", detail, desk.clock())
@@ -94,9 +93,7 @@ class FullFit:
             # Spawned, never forked: the web process has threads.
             context = multiprocessing.get_context("spawn")
             ours, theirs = context.Pipe(duplex=False)
-            process = context.Process(
-                target=_fit, args=(theirs, table, stuck, desk.study, folder), daemon=True
-            )
+            process = context.Process(target=_fit, args=(theirs, evidence, folder), daemon=True)
             process.start()
             theirs.close()
             self._process, self.state, self.trouble = process, "running", ""
@@ -168,17 +165,46 @@ def log_reading(desk: Desk, action: str) -> None:
         )
 
 
-def _fit(
-    told: Connection, table: ResponseTable, stuck: StuckTable | None, study: Study, folder: Path
-) -> None:
+@dataclass(frozen=True)
+class _Evidence:
+    """All that a report is made of, on its way to another process."""
+
+    table: ResponseTable
+    stuck: StuckTable | None
+    lag: LagTable | None
+    metrics: MetricTable | None
+    study: Study
+
+    @classmethod
+    def of(cls, desk: Desk, include_simulated: bool) -> Self:
+        store, stored = desk.store, desk.stored_study
+        return cls(
+            store.responses_table(stored, include_simulated),
+            store.stuck_table(stored, include_simulated),
+            store.lag_table(stored, include_simulated),
+            store.metric_table(stored, include_simulated),
+            stored.study,
+        )
+
+
+def _fit(told: Connection, evidence: _Evidence, folder: Path) -> None:
     """Fit and write, in a process of its own; sends `Step`s, then the warnings or what went wrong."""
     be_a_worker(_NICENESS)
     from analysis.fit import fit
     from analysis.report import write_report
 
     try:
-        fitted = fit(table, progress=_Teller(told, "Fitting"))
-        write_report(table, fitted, folder, stuck=stuck, study=study, progress=_Teller(told, "Writing"))
+        fitted = fit(evidence.table, progress=_Teller(told, "Fitting"))
+        write_report(
+            evidence.table,
+            fitted,
+            folder,
+            stuck=evidence.stuck,
+            study=evidence.study,
+            progress=_Teller(told, "Writing"),
+            lag=evidence.lag,
+            metrics=evidence.metrics,
+        )
         told.send(tuple(fitted.warnings))
     except ElbowroomError as error:
         told.send(str(error))

@@ -283,7 +283,7 @@ def main() -> None:
     if pictures is not None:
         pictures.mkdir()
     width, height = (int(side) for side in chosen.size.split("x"))
-    console = Console()
+    console = Console(width=140)
     begun = time.monotonic()
     with serving(chosen.out, text) as server, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(FLAGS))
