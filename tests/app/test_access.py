@@ -13,8 +13,9 @@ import pytest
 from playwright.sync_api import Locator, Page, WebSocketRoute, expect
 
 from app.server.passphrase import VARIABLE
-from app.server.visitors import PARTICIPANT_COOKIE
+from app.server.visitors import PARTICIPANT_COOKIE, new_token
 from data.records import Comparison, Device, Slot, Trial
+from data.store import token_sha256
 from data.study import Study
 from sim_trials.scripted_hand import ScriptedHand
 
@@ -216,7 +217,11 @@ def lab_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
     """A robot in the lab: the participant's page, and the operator's."""
     visit.join(starts=True)
     yield "external", visit.looks_at("/", "Comparison 1 of 1")
-    visit.page.goto(visit.server.researcher_url)
+    # A link of its own, since it opens once.
+    token = new_token()
+    store = visit.server.store
+    store.create_link("researcher", store.studies()[0], token_sha256(token))
+    visit.page.goto(f"{visit.server.base}/researcher/{token}")
     visit.page.get_by_role("link", name="Operator").click()
     expect(visit.page.get_by_role("heading", name="as method A")).to_be_visible(timeout=TIMEOUT_MS)
     visit.page.wait_for_timeout(500)

@@ -44,7 +44,7 @@ def responses(tmp_path: Path) -> Path:
     [
         (
             ["study", "check", "nowhere.toml"],
-            "no such file, and no built-in study (built in: carmichael2017, ",
+            "no such file, and no built-in study (built in: beaudoin2022, carmichael2017, ",
         ),
         (["trial", "--mode", "M9"], "mode: 'M9' is not one of: M1, M2, M3"),
         (["trial", "--mode", "M1", "--operator-seed", "-1"], "--operator-seed"),

@@ -11,8 +11,9 @@ from playwright.sync_api import Page, expect
 from data.store import Store
 
 from .conftest import Server, serving
+from .ear import Ear
 from .test_external_runs import LAB_STUDY
-from .test_walk import TIMEOUT_MS, Ear, open_page
+from .test_walk import TIMEOUT_MS, open_page
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -25,7 +26,7 @@ def test_a_session_in_the_lab_ends_in_a_report_with_stuck_rates(chromium: "Brows
     with serving(tmp_path, LAB_STUDY) as server:
         researcher, participant = chromium.new_context(), chromium.new_context()
         operator, page = open_page(researcher), open_page(participant)
-        ear = Ear(page)
+        ear = Ear(page, SECRETS)
         operator.goto(server.researcher_url)
         operator.get_by_role("link", name="Operator").click()
         expect(operator.get_by_role("heading", name="Nobody is in a session")).to_be_visible(
@@ -57,7 +58,7 @@ def test_a_session_in_the_lab_ends_in_a_report_with_stuck_rates(chromium: "Brows
         expect(
             second_window.get_by_role("heading", name=re.compile("Running: .* as method B"))
         ).to_be_visible(timeout=TIMEOUT_MS)
-        ear.look(page)
+        ear.look()
         expect(page.get_by_text("You can answer")).to_be_visible(timeout=TIMEOUT_MS)
         answer.click()
         page.get_by_role("radiogroup", name="Which method felt safest to use?").get_by_role(
@@ -65,15 +66,15 @@ def test_a_session_in_the_lab_ends_in_a_report_with_stuck_rates(chromium: "Brows
         ).first.check()
         page.get_by_role("button", name="Submit answers").click()
         expect(page.get_by_role("heading", name="Thank you")).to_be_visible(timeout=TIMEOUT_MS)
-        ear.look(page)
+        ear.look()
         page.goto(f"{server.base}/operator")
         expect(page.get_by_role("heading", name="Please open your link")).to_be_visible(timeout=TIMEOUT_MS)
-        ear.look(page)
+        ear.look()
         for window in (operator, second_window):
             expect(window.get_by_role("heading", name="Nobody is in a session")).to_be_visible(
                 timeout=TIMEOUT_MS
             )
-        assert secrets_in(ear) == []
+        assert ear.secrets_heard() == []
         assert ear.errors == []
         check_store(server)
         check_no_simulator(server)
@@ -102,15 +103,6 @@ def run_one(operator: Page, page: Page, slot: str, ending: str) -> None:
 
 def says(page: Page, text: str) -> None:
     expect(page.get_by_role("heading", name=text)).to_be_visible(timeout=TIMEOUT_MS)
-
-
-def secrets_in(ear: Ear) -> list[str]:
-    return [
-        f"{secret} in {where}"
-        for where, content in ear.heard
-        for secret in SECRETS
-        if secret.lower().encode() in content.lower()
-    ]
 
 
 def check_store(server: Server) -> None:
