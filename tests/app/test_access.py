@@ -325,11 +325,17 @@ class Keys:
 
     def reach(self, goal: Locator, key: str = "Tab") -> None:
         """Press a key until the goal has the focus; it must be seen to have it."""
+        # While a page turns, the one before may still be there.
+        expect(goal).to_have_count(1, timeout=TIMEOUT_MS)
         expect(goal).to_be_visible(timeout=TIMEOUT_MS)
-        for _ in range(20):
+        for _ in range(60):
             if self.has_focus(goal):
-                break
+                # A page that is still coming takes the focus away again.
+                self.page.wait_for_timeout(250)
+                if self.has_focus(goal):
+                    break
             self.page.keyboard.press(key)
+            self.page.wait_for_timeout(30)
         expect(goal).to_be_focused()
         assert goal.evaluate(self.SEES), "nobody sees where the focus is"
 
