@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
@@ -19,6 +20,9 @@ from app.server.laps import LapKeeper
 from app.server.visitors import PARTICIPANT_COOKIE, admit, new_participant_cookie
 from data.records import Participant
 from data.store import Store
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
 
 TINY_STUDY = """
 format = 1
@@ -60,6 +64,19 @@ GUIDED_STUDY = TINY_STUDY.replace('trial_source = "observed"', 'trial_source = "
     "[maze]\nright_y_m = 0.1\nbottom_z_m = 0.3\n[practice]\nlaps = 1\nright_y_m = 0.2\n"
 )
 """The tiny study for people who guide the robot themselves, on a maze that takes seconds."""
+BACKGROUND = """
+[[background]]
+name = "before"
+wording = "Have you guided a robot by hand before?"
+choices = ["Never", "Often"]
+[[background]]
+name = "years"
+wording = "How old are you?"
+kind = "number"
+lowest = 18
+highest = 99
+"""
+"""Two questions about the person, to append to a study."""
 SECRETS = ("Zwetschge", "Mirabelle", "Quitte", "Zweifelhaft", "lambda", "dls", "sigma", "damping")
 """What no participant's browser may ever receive of the tiny study, in any case of letters."""
 
@@ -172,3 +189,20 @@ def guided_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """One server of the guided study for all tests that don't end it."""
     with serving(tmp_path_factory.mktemp("guided"), GUIDED_STUDY) as running:
         yield running
+
+
+@pytest.fixture(scope="module")
+def stage_page(chromium: "Browser", server: Server) -> Iterator["Page"]:
+    """A page of the server, to import the stage's modules from."""
+    context = chromium.new_context()
+    opened = context.new_page()
+    opened.goto(f"{server.base}/healthz")
+    yield opened
+    context.close()
+
+
+def run_module(page: "Page", module: str, script: str, argument: object = None) -> object:
+    """What a script returns that finds a module of the stage as ``m``, and the argument as ``given``."""
+    return page.evaluate(
+        f"async (given) => {{ const m = await import('/stage/{module}.js'); {script} }}", argument
+    )

@@ -1,8 +1,6 @@
-"""Everybody can take part: no page breaks a rule that axe knows, and the keyboard alone is enough."""
+"""Everybody can take part: no page breaks a rule that axe knows."""
 
 import json
-import math
-import time
 from collections.abc import Callable, Iterator
 from datetime import timedelta
 from pathlib import Path
@@ -10,17 +8,14 @@ from typing import TYPE_CHECKING
 
 import axe_playwright_python
 import pytest
-from playwright.sync_api import Locator, Page, WebSocketRoute, expect
+from playwright.sync_api import Page, WebSocketRoute, expect
 
 from app.server.passphrase import VARIABLE
 from app.server.visitors import PARTICIPANT_COOKIE, new_token
 from data.records import Comparison, Device, Slot, Trial
 from data.store import token_sha256
-from data.study import Study
-from sim_trials.scripted_hand import ScriptedHand
 
-from .conftest import GUIDED_STUDY, Server, serving
-from .guided_session import Scene, wait_for_trial
+from .conftest import BACKGROUND, GUIDED_STUDY, Server, serving
 from .test_external_runs import LAB_STUDY
 
 if TYPE_CHECKING:
@@ -37,20 +32,7 @@ RUN_AXE = """async () => {
     const told = bad.map(({ id, nodes }) => `${id}: ${nodes.map((n) => n.html.slice(0, 160)).join(' | ')}`);
     return marked ? ['an exception is shown', ...told] : told;
 }"""
-BACKGROUND = """
-[[background]]
-name = "before"
-wording = "Have you guided a robot by hand before?"
-choices = ["Never", "Often"]
-[[background]]
-name = "years"
-wording = "How old are you?"
-kind = "number"
-lowest = 18
-highest = 99
-"""
-ONE_COMPARISON = GUIDED_STUDY + BACKGROUND
-THREE_COMPARISONS = ONE_COMPARISON.replace("repetitions = 1", "repetitions = 3\nbreak_every = 2")
+THREE_COMPARISONS = (GUIDED_STUDY + BACKGROUND).replace("repetitions = 1", "repetitions = 3\nbreak_every = 2")
 CONSOLE_PAGES = ("Overview", "Sessions", "Trials", "Results", "Data", "Study file", "Links")
 
 
@@ -264,154 +246,3 @@ def test_no_page_breaks_a_serious_rule(
     visit = Visit(chromium, request.getfixturevalue(fixture), scheme)
     assert broken_rules(pages(visit)) == {}
     visit.context.close()
-
-
-class KeyboardHand:
-    """Holds the arrow keys that bring the hand to where the scripted hand would have it."""
-
-    ARROWS = (("ArrowLeft", 1, 0), ("ArrowRight", -1, 0), ("ArrowUp", 0, 1), ("ArrowDown", 0, -1))
-    NEAR_M = 0.006
-
-    def __init__(self, scene: Scene, study: Study) -> None:
-        self.scene, self.keyboard = scene, scene.page.keyboard
-        self.hand = ScriptedHand(study, pace_m_s=0.07)
-        self.held: set[str] = set()
-
-    def guide(self, seconds: float = math.inf) -> None:
-        """Guide for a while, or until the lap ends."""
-        state = self.scene.state
-        assert state is not None
-        trial, begun = state.trial, time.monotonic()
-        looked = begun
-        self.keyboard.press("Enter")
-        self.keyboard.press(" ")
-        while time.monotonic() - begun < min(seconds, TIMEOUT_MS / 1000):
-            state = self.scene.state
-            if state is None or state.trial != trial or state.has_ended:
-                break
-            view, now = state.view, time.monotonic()
-            wanted = self.hand.aim(view, max(now - looked, 1e-3))
-            looked = now
-            left, up = wanted.y_m - view.hand_y_m, wanted.z_m - view.hand_z_m
-            self.hold({key for key, y, z in self.ARROWS if y * left + z * up > self.NEAR_M})
-            self.scene.page.wait_for_timeout(20)
-        self.hold(set())
-        self.keyboard.press("Escape")
-
-    def hold(self, keys: set[str]) -> None:
-        for key in self.held - keys:
-            self.keyboard.up(key)
-        for key in keys - self.held:
-            self.keyboard.down(key)
-        self.held = keys
-
-
-class Keys:
-    """A person at the keyboard: moves on with Tab, and sees where they are."""
-
-    SEES = """(e) => {
-        for (let around = e, i = 0; around && i < 5; around = around.parentElement, i++) {
-          const { outlineStyle, outlineWidth } = getComputedStyle(around);
-          if (outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2) return true;
-        }
-        return false;
-    }"""
-
-    def __init__(self, page: Page) -> None:
-        self.page = page
-
-    def has_focus(self, goal: Locator) -> bool:
-        return bool(goal.evaluate("(e) => e.getRootNode().activeElement === e"))
-
-    def reach(self, goal: Locator, key: str = "Tab") -> None:
-        """Press a key until the goal has the focus; it must be seen to have it."""
-        # While a page turns, the one before may still be there.
-        expect(goal).to_have_count(1, timeout=TIMEOUT_MS)
-        expect(goal).to_be_visible(timeout=TIMEOUT_MS)
-        for _ in range(60):
-            if self.has_focus(goal):
-                # A page that is still coming takes the focus away again.
-                self.page.wait_for_timeout(250)
-                if self.has_focus(goal):
-                    break
-            self.page.keyboard.press(key)
-            self.page.wait_for_timeout(30)
-        expect(goal).to_be_focused()
-        assert goal.evaluate(self.SEES), "nobody sees where the focus is"
-
-    def press(self, name: str, key: str = "Enter") -> None:
-        self.reach(self.page.get_by_role("button", name=name))
-        self.page.keyboard.press(key)
-
-    def choose(self, group: str, option: str) -> None:
-        """To a radio group with Tab, and to its option with the arrows."""
-        options = self.page.get_by_role("radiogroup", name=group).get_by_role("radio")
-        expect(options.first).to_be_visible(timeout=TIMEOUT_MS)
-        for _ in range(20):
-            if any(self.has_focus(each) for each in options.all()):
-                break
-            self.page.keyboard.press("Tab")
-        chosen = options.and_(self.page.get_by_role("radio", name=option, exact=True))
-        if options.count() and self.has_focus(chosen) and not chosen.is_checked():
-            self.page.keyboard.press(" ")
-        for _ in range(options.count()):
-            if chosen.is_checked():
-                break
-            self.page.keyboard.press("ArrowRight")
-            self.page.wait_for_timeout(100)
-        expect(chosen).to_be_checked()
-        assert chosen.evaluate(self.SEES), "nobody sees where the focus is"
-
-
-def test_a_whole_session_by_the_keyboard_alone(chromium: "Browser", tmp_path: Path) -> None:
-    with serving(tmp_path, ONE_COMPARISON) as server:
-        context = chromium.new_context(viewport=SIZE)  # type: ignore[arg-type]
-        context.set_default_timeout(TIMEOUT_MS)
-        page, study = context.new_page(), server.store.studies()[0].study
-        errors: list[str] = []
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        keys, wall = Keys(page), page.get_by_label("Wall", exact=True)
-        practice = Scene(page, study.practice_study.maze)
-        page.goto(server.participant_url)
-        keys.press("I agree to take part")
-        keys.choose("Have you guided a robot by hand before?", "Often")
-        keys.reach(page.get_by_label("How old are you?"))
-        page.keyboard.type("33")
-        keys.press("Continue")
-        expect(page.get_by_role("heading", name="What you will do")).to_be_visible(timeout=TIMEOUT_MS)
-        keys.press("Continue", " ")
-        keys.choose("What do you guide it with?", "Keyboard")
-        keys.press("Continue")
-
-        keys.reach(wall)
-        wait_for_trial(practice, 0)
-        KeyboardHand(practice, study.practice_study).guide()
-        go_on = page.get_by_role("button", name="Continue")
-        expect(go_on).to_be_focused(timeout=TIMEOUT_MS)
-        keys.press("Continue")
-        expect(page.get_by_role("heading", name="Next: compare")).to_be_visible(timeout=TIMEOUT_MS)
-        scene = Scene(page, study.maze)
-        keys.press("Continue")
-
-        keys.reach(wall)
-        for slot, key in (("A", "1"), ("B", "2")):
-            page.keyboard.press(key)
-            expect(page.get_by_role("radio", name=f"Method {slot}", exact=True)).to_be_checked()
-            wait_for_trial(scene, scene.state.trial if slot == "B" and scene.state else 0)
-            KeyboardHand(scene, study).guide(2.5)
-        keys.press("Answer the questions")
-        keys.choose("Which method was the smoothest to use?", "B smoother")
-        keys.choose("Which method felt safest to use?", "About the same")
-        keys.press("Submit answers")
-        expect(page.get_by_role("heading", name="Thank you")).to_be_visible(timeout=TIMEOUT_MS)
-        context.close()
-        assert errors == []
-        (person,) = server.store.participants(server.store.studies()[0])
-        assert (person.device, person.background["years"]) == ("keyboard", "33")
-        (comparison,) = server.store.comparisons(server.store.studies()[0])
-        assert {r.question: r.answer for r in server.store.responses(comparison.id)} == {
-            "Q1": "B>A", "Q2": "A=B",
-        }  # fmt: skip
-        trials = server.store.trials(comparison=comparison.id)
-        assert {trial.slot for trial in trials} == {"A", "B"}
-        assert all(trial.metrics["latency_samples"] > 10 for trial in trials)
