@@ -8,6 +8,7 @@ Markov chain Monte Carlo", section 3.3 (initial monotone sequence).
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,8 @@ RHAT_BELOW = 1.01
 """Gate on R-hat (Vehtari et al. 2021)."""
 ESS_ABOVE = 400.0
 """Gate on bulk and tail ESS: 100 for each of four chains (Vehtari et al. 2021)."""
+_BLOCK = 32
+"""Quantities looked at together: their draws fit a processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -47,21 +50,34 @@ class Convergence:
 def convergence(draws: NDArray[np.float64]) -> Convergence:
     """Rank-normalised split R-hat, bulk ESS and tail ESS of many quantities at once.
 
+    A quantity that is the same in every draw has an R-hat of 1 and an ESS of all the draws; one that is
+    constant within chains and differs between them has an infinite R-hat; one with a draw that is no finite
+    number has nan.
+
     Parameters
     ----------
     draws : ndarray, shape (quantity, chain, draw)
         At least four draws a chain.
     """
+    blocks = [_convergence(draws[k : k + _BLOCK]) for k in range(0, len(draws), _BLOCK)]
+    return Convergence(*(np.concatenate(values) for values in zip(*blocks, strict=True)))
+
+
+def _convergence(draws: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    """R-hat, bulk ESS and tail ESS of a block of quantities."""
+    is_known = np.asarray(np.isfinite(draws).all(axis=(1, 2)))
+    draws = np.where(is_known[:, None, None], draws, 0.0)
     halves = _split(draws)
     z = _normal_scores(halves)
-    folded = np.abs(halves - np.median(halves, axis=(1, 2), keepdims=True))
-    low, high = np.quantile(draws, [0.05, 0.95], axis=(1, 2))
-    tails = [_ess(_split((draws <= q[:, None, None]).astype(np.float64))) for q in (low, high)]
-    return Convergence(
-        np.maximum(_rhat(z), _rhat(_normal_scores(folded))),
-        _ess(z),
-        np.minimum(*tails),
-    )
+    ordered = np.sort(halves.reshape(len(draws), -1), axis=1)
+    middle = ordered[:, ordered.shape[1] // 2 - 1 : ordered.shape[1] // 2 + 1].mean(axis=1)
+    folded = _normal_scores(np.abs(halves - middle[:, None, None]))
+    # Of the draws as many lie at or below a quantile as at or below the draw next below it.
+    ordered = np.sort(draws.reshape(len(draws), -1), axis=1)
+    ends = [ordered[:, int(share * (ordered.shape[1] - 1)), None, None] for share in (0.05, 0.95)]
+    tails = [_ess(_split((draws <= end).astype(np.float64))) for end in ends]
+    found = (np.maximum(_rhat(z), _rhat(folded)), _ess(z), np.minimum(*tails))
+    return tuple(np.where(is_known, values, np.nan) for values in found)
 
 
 def hdi(draws: NDArray[np.float64], probability: float) -> NDArray[np.float64]:
@@ -95,24 +111,42 @@ def _normal_scores(draws: NDArray[np.float64]) -> NDArray[np.float64]:
     """Average ranks over all chains, as normal quantiles (Blom's offset 3/8)."""
     flat = draws.reshape(len(draws), -1)
     n = flat.shape[1]
-    order = np.argsort(flat, axis=1, kind="stable")
+    order = np.argsort(flat, axis=1)
     ordered = np.take_along_axis(flat, order, axis=1)
-    place = np.broadcast_to(np.arange(n), flat.shape)
-    starts = np.diff(ordered, axis=1, prepend=-np.inf) != 0
-    ends = np.concatenate([starts[:, 1:], np.ones((len(flat), 1), dtype=bool)], axis=1)
-    first = np.maximum.accumulate(np.where(starts, place, 0), axis=1)
-    last = np.minimum.accumulate(np.where(ends, place, n)[:, ::-1], axis=1)[:, ::-1]
-    rank = np.empty_like(flat)
-    np.put_along_axis(rank, order, (first + last) / 2 + 1, axis=1)
-    return ndtri((rank - 3 / 8) / (n + 1 / 4)).reshape(draws.shape)
+    is_new = ordered[:, 1:] != ordered[:, :-1]
+    of_rank = _score_of_twice_rank(n)
+    if is_new.all():
+        by_place = np.broadcast_to(of_rank[2::2], flat.shape)
+    else:
+        edge, place = np.ones((len(flat), 1), dtype=bool), np.broadcast_to(np.arange(n), flat.shape)
+        starts, ends = np.concatenate([edge, is_new], axis=1), np.concatenate([is_new, edge], axis=1)
+        first = np.maximum.accumulate(np.where(starts, place, 0), axis=1)
+        last = np.minimum.accumulate(np.where(ends, place, n)[:, ::-1], axis=1)[:, ::-1]
+        by_place = of_rank[first + last + 2]
+    scores = np.empty_like(flat)
+    np.put_along_axis(scores, order, by_place, axis=1)
+    return scores.reshape(draws.shape)
+
+
+@lru_cache(maxsize=4)
+def _score_of_twice_rank(n: int) -> NDArray[np.float64]:
+    """Normal quantiles of the ranks 0, 1/2, 1, ..., n of n draws."""
+    return np.asarray(ndtri(np.maximum(np.arange(2 * n + 1) / 2 - 3 / 8, 0.0) / (n + 1 / 4)))
 
 
 def _rhat(chains: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Square root of the pooled over the mean within-chain variance."""
+    """Square root of the pooled over the mean within-chain variance; 1 if there is none of either."""
     n = chains.shape[2]
     between = n * chains.mean(axis=2).var(axis=1, ddof=1)
     within = chains.var(axis=2, ddof=1).mean(axis=1)
-    return np.sqrt((between / within + n - 1) / n)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rhat = np.sqrt((between / within + n - 1) / n)
+    return np.where(_is_constant(chains), 1.0, rhat)
+
+
+def _is_constant(chains: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which quantities are the same in every draw of every chain."""
+    return np.ptp(chains, axis=(1, 2)) < np.finfo(float).resolution
 
 
 def _ess(chains: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -120,11 +154,12 @@ def _ess(chains: NDArray[np.float64]) -> NDArray[np.float64]:
     m, n = chains.shape[1:]
     centred = chains - chains.mean(axis=2, keepdims=True)
     spectrum = rfft(centred, n=next_fast_len(2 * n, real=True), axis=2)
-    power = spectrum.real**2 + spectrum.imag**2
-    covariance = irfft(power, n=next_fast_len(2 * n, real=True), axis=2)[..., :n].mean(axis=1) / n
+    # The mean over the chains is taken before the transform back, which is linear.
+    power = (spectrum.real**2 + spectrum.imag**2).mean(axis=1)
+    covariance = irfft(power, n=next_fast_len(2 * n, real=True), axis=1)[:, :n] / n
     within = covariance[:, :1] * n / (n - 1)
     total = within * (n - 1) / n + chains.mean(axis=2).var(axis=1, ddof=1)[:, None]
-    is_constant = np.ptp(chains, axis=(1, 2)) < np.finfo(float).resolution
+    is_constant = _is_constant(chains)
     total[is_constant] = 1.0
     rho = 1.0 - (within - covariance) / total
     rho[:, 0] = 1.0

@@ -8,7 +8,8 @@ from typing import Protocol, get_args
 import numpy as np
 
 from analysis.counts import Counts, count_responses
-from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW
+from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, Convergence
+from analysis.gate import reported_convergence
 from analysis.identifiability import Examination, examine
 from analysis.model import Problem, describe, model_of, priors
 from analysis.results import Draws, Engine, Fit, FitSettings, Link, QuestionFit
@@ -18,7 +19,6 @@ from analysis.summaries import (
     mode_results,
     pair_results,
     parameter_results,
-    reported_convergence,
 )
 from data.errors import InputError, one_of
 from data.responses import QuestionScale, ResponseTable
@@ -50,6 +50,12 @@ class _Prepared:
     warnings: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class _Sampled:
+    draws: Draws
+    state: Convergence
+
+
 def fit(table: ResponseTable, settings: FitSettings | None = None, progress: Progress | None = None) -> Fit:
     """Fit every question of a response table.
 
@@ -75,8 +81,8 @@ def fit(table: ResponseTable, settings: FitSettings | None = None, progress: Pro
     askable = [k for k, p in enumerate(prepared) if not p.examination.refusal]
     total = len(askable)
     tell(0, total, "sampling")
-    draws = _sampled([prepared[k].problem for k in askable], settings, tell)
-    by_question: dict[int, Draws] = dict(zip(askable, draws, strict=True))
+    sampled = _sampled([prepared[k].problem for k in askable], settings, tell)
+    by_question = dict(zip(askable, sampled, strict=True))
     fits = tuple(_question_fit(p, table.modes, by_question.get(k)) for k, p in enumerate(prepared))
     is_hierarchical = table.has_participants and not settings.pooled and settings.engine != "gibbs"
     return Fit(
@@ -150,23 +156,25 @@ def _prepare(table: ResponseTable, question: QuestionScale, settings: FitSetting
     return _Prepared(counts, examination, Problem(used, model), warnings)
 
 
-def _sampled(problems: list[Problem], settings: FitSettings, tell: Progress) -> list[Draws]:
+def _sampled(problems: list[Problem], settings: FitSettings, tell: Progress) -> list[_Sampled]:
     """Draws of every problem that pass the gate, or the longest there are."""
     if not problems:
         return []
     sample = _sampler(settings.engine)
     names = [problem.counts.question.short or problem.counts.question.name for problem in problems]
     draws = sample(problems, settings, lambda k: tell(k, len(problems), names[k - 1]))
+    found = [_Sampled(d, reported_convergence(d)) for d in draws]
     for times in LONGER:
-        failed = [k for k, d in enumerate(draws) if not reported_convergence(d).passed]
+        failed = [k for k, one in enumerate(found) if not one.state.passed]
         if not failed:
             break
         tell(len(problems), len(problems), f"sampling longer: {', '.join(names[k] for k in failed)}")
         longer = replace(settings, draws=settings.draws * times)
         for k, again in zip(failed, sample([problems[k] for k in failed], longer), strict=True):
             # Thinned, so that every question has as many draws as the settings say.
-            draws[k] = every_draw(again, times)
-    return draws
+            kept = every_draw(again, times)
+            found[k] = _Sampled(kept, reported_convergence(kept))
+    return found
 
 
 def _sampler(engine: Engine) -> Sampler:
@@ -186,7 +194,7 @@ def _sampler(engine: Engine) -> Sampler:
             return gibbs.sample
 
 
-def _question_fit(prepared: _Prepared, modes: tuple[str, ...], raw: Draws | None) -> QuestionFit:
+def _question_fit(prepared: _Prepared, modes: tuple[str, ...], found: _Sampled | None) -> QuestionFit:
     counts, examination = prepared.counts, prepared.examination
     known = [name for name in counts.participants if name]
     unranked = QuestionFit(
@@ -206,10 +214,10 @@ def _question_fit(prepared: _Prepared, modes: tuple[str, ...], raw: Draws | None
         missing_pairs=examination.missing_pairs,
         hierarchical=prepared.problem.model.hierarchical,
     )
-    if raw is None:
+    if found is None:
         return unranked
-    draws = draws_in_order(raw, [counts.modes.index(mode) for mode in modes])
-    state = reported_convergence(draws)
+    draws = draws_in_order(found.draws, [counts.modes.index(mode) for mode in modes])
+    state = found.state
     sampled = replace(
         unranked,
         draws=draws,

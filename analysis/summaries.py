@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.counts import Counts
-from analysis.diagnostics import Convergence, convergence, hdi
+from analysis.diagnostics import hdi
 from analysis.results import HDI_PROBABILITY, Draws, ModeResult, PairResult, Quantity
 
 FloatArray = NDArray[np.float64]
@@ -23,16 +23,6 @@ def every_draw(draws: Draws, step: int) -> Draws:
         {name: values[:, ::step] for name, values in draws.parameters.items()},
         draws.diverging[:, ::step],
     )
-
-
-def reported_convergence(draws: Draws) -> Convergence:
-    """Convergence of every quantity that is reported: abilities, worths and parameters."""
-    quantities = [
-        np.moveaxis(draws.ability, -1, 0),
-        np.moveaxis(draws.worth, -1, 0),
-        *(values[None] for values in draws.parameters.values()),
-    ]
-    return convergence(np.concatenate(quantities))
 
 
 def mode_results(draws: Draws, modes: tuple[str, ...]) -> tuple[ModeResult, ...]:
@@ -59,6 +49,15 @@ def mode_results(draws: Draws, modes: tuple[str, ...]) -> tuple[ModeResult, ...]
     )
 
 
+def ranks(ability: FloatArray) -> FloatArray:
+    """Rank of each mode in each draw, 1 for the highest ability; same shape as ``ability``, (..., mode)."""
+    by_rank = np.argsort(-ability, axis=-1, kind="stable")
+    found = np.empty(ability.shape)
+    places = np.broadcast_to(np.arange(1.0, ability.shape[-1] + 1), ability.shape)
+    np.put_along_axis(found, by_rank, places, axis=-1)
+    return found
+
+
 def rank_probabilities(ability: FloatArray) -> FloatArray:
     """Share of the draws in which each mode has each rank.
 
@@ -72,11 +71,8 @@ def rank_probabilities(ability: FloatArray) -> FloatArray:
         Rank 1, the highest ability, first; rows and columns sum to 1.
     """
     n_draws, n_modes = ability.shape
-    by_rank = np.argsort(-ability, axis=1, kind="stable")
-    tally = np.zeros((n_modes, n_modes))
-    for rank in range(n_modes):
-        tally[:, rank] = np.bincount(by_rank[:, rank], minlength=n_modes)
-    return tally / n_draws
+    held = ranks(ability).astype(np.intp) - 1
+    return np.stack([np.bincount(column, minlength=n_modes) for column in held.T]) / n_draws
 
 
 def pair_results(counts: Counts, modes: tuple[str, ...], draws: Draws | None) -> tuple[PairResult, ...]:

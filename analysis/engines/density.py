@@ -1,19 +1,23 @@
 """Log posterior density and gradient of one question, compiled.
 
 The position x of a sampler is ``[u (K-1), side_effect, log gaps | log_nu, log subject_sd, v (S, K-1)]``;
-parts that a model lacks are left out. ``ability = basis @ u`` and ``z[s] = basis @ v[s]``, with the basis of
-``analysis.zero_sum``.
+parts that a model lacks are left out. ``ability = basis @ u`` with the basis of ``analysis.zero_sum``. A
+participant's own abilities are ``ability + subject_sd z[s]``; pooled, there is one participant without
+deviations. Participants stand in the position partly centred, each by a ``c`` of their own from 0 to 1:
+``subject_sd z[s] = subject_sd^(1-c) basis @ (v[s] - c u)``, so ``v[s] ~ Normal(c u, subject_sd^c)``. With
+``c = 0`` that is the non-centred form, ``z[s] = basis @ v[s]``; with ``c = 1`` v is their own ability.
 
-A cell with counts n_0 .. n_L (from B much) adds, for every cut-point theta_k,
-``n_k log logistic(theta_k - eta) + n_(k+1) log logistic(eta - theta_k)``, and every inner interval adds its
-total count times ``log(1 - exp(-width))``. This form is exact, needs one exponential a cut-point, and skips
-the cut-points no answer touches.
+References
+----------
+Papaspiliopoulos, Roberts, Skoeld 2007, "A general framework for the parametrization of hierarchical models",
+Statistical Science 22 (partly centred forms).
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from analysis.engines.compiled import REGROUPED, compiled
+from analysis.engines.likelihood import adjacent, cumulative
 from analysis.model import CUT_GAP_SCALE, LOG_NU_SD, SIDE_EFFECT_SD, SUBJECT_SD_SCALE, Problem
 
 HEADER = 8
@@ -22,17 +26,26 @@ _CELLS, _MODES, _PARTICIPANTS, _LEVELS, _ADJACENT, _HIERARCHICAL, _SIDE, _GAPS =
 N_REALS = 5
 """Prior scales that follow the header: abilities, side effect, gaps, log_nu, subject_sd."""
 
-_NEAR_OVERFLOW = 1e200
+Floats = NDArray[np.float64]
+Places = NDArray[np.uint32]
 
 
-def packed(problem: Problem) -> NDArray[np.int64]:
+def packed(problem: Problem, centring: Floats | None = None) -> NDArray[np.int64]:
     """Everything the density reads, in one block of memory: what a raw pointer can name.
+
+    Parameters
+    ----------
+    problem : Problem
+    centring : ndarray, shape (participant,), optional
+        ``c`` of each participant; without it the form is non-centred.
 
     Returns
     -------
-    ndarray of int64, shape (HEADER + N_REALS + levels + cells * (3 + levels),)
-        Header, prior scales (bits of float64), the total of every answer, then participant, A and B by
-        cell, then the counts by cell; answers from B much to A much (the order of the cut-points).
+    ndarray of int64, shape (HEADER + N_REALS + levels + participants + cells + levels * cells,)
+        Header; bits of float64: prior scales, the total of every answer and ``c`` by participant; by cell,
+        the places of A and B among all participants' abilities (participant * modes + mode), two uint32;
+        bits of float64: the counts by level, then by cell. Answers go from B much to A much (the order of
+        the cut-points).
     """
     counts, model = problem.counts, problem.model
     header = [
@@ -45,50 +58,138 @@ def packed(problem: Problem) -> NDArray[np.int64]:
         model.side_effect,
         model.n_gaps,
     ]
-    scales = np.array([model.prior_sd, SIDE_EFFECT_SD, CUT_GAP_SCALE, LOG_NU_SD, SUBJECT_SD_SCALE])
-    ascending = counts.responses[:, ::-1]
+    scales = [model.prior_sd, SIDE_EFFECT_SD, CUT_GAP_SCALE, LOG_NU_SD, SUBJECT_SD_SCALE]
+    ascending = counts.responses[:, ::-1].T
+    c = np.zeros(len(counts.participants)) if centring is None else centring
+    reals = np.concatenate([scales, ascending.sum(axis=1), c])
+    first = counts.participant * len(counts.modes)
+    places = np.stack([first + counts.mode_a, first + counts.mode_b]).astype(np.uint32)
     return np.concatenate(
         [
             np.array(header, dtype=np.int64),
-            scales.view(np.int64),
-            ascending.sum(axis=0),
-            counts.participant,
-            counts.mode_a,
-            counts.mode_b,
-            ascending.ravel(),
+            reals.view(np.int64),
+            places.ravel().view(np.int64),
+            ascending.astype(np.float64).ravel().view(np.int64),
         ]
     )
 
 
-@njit(cache=True, error_model="numpy", nogil=True, inline="always")
-def _spread(u: NDArray[np.float64], scale: float, out: NDArray[np.float64]) -> None:
-    """``out += scale * basis @ u`` in O(K)."""
+@compiled(REGROUPED)
+def _spread(v: Floats, c: float, u: Floats, scale: float, base: Floats, out: Floats) -> float:
+    """``out = base + scale * basis @ y`` with ``y = v - c u`` in O(K); returns ``y @ y``."""
     n = out.shape[0]
-    total = 0.0
+    total, squares = 0.0, 0.0
     for j in range(n - 1):
-        total += u[j]
+        y = v[j] - c * u[j]
+        total += y
+        squares += y * y
     root = np.sqrt(n)
     shift = total / (root + n)
     for j in range(n - 1):
-        out[j] += scale * (u[j] - shift)
-    out[n - 1] -= scale * total / root
+        out[j] = base[j] + scale * (v[j] - c * u[j] - shift)
+    out[n - 1] = base[n - 1] - scale * total / root
+    return squares
 
 
-@njit(cache=True, error_model="numpy", nogil=True, inline="always")
-def _gather(g: NDArray[np.float64], scale: float, out: NDArray[np.float64]) -> None:
-    """``out += scale * basis.T @ g`` in O(K): the adjoint of ``_spread``."""
+@compiled(REGROUPED)
+def _gather(g: Floats, scale: float, v: Floats, c: float, u: Floats, weight: float, out: Floats) -> float:
+    """``out = scale * basis.T @ g - weight * y`` with ``y = v - c u`` in O(K), the adjoint of ``_spread``.
+
+    Returns ``(1 - c) scale * y @ basis.T @ g + c weight * y @ y``.
+    """
     n = g.shape[0]
     total = 0.0
     for j in range(n - 1):
         total += g[j]
     root = np.sqrt(n)
     shift = total / (root + n) + g[n - 1] / root
+    along, squares = 0.0, 0.0
     for j in range(n - 1):
-        out[j] += scale * (g[j] - shift)
+        y = v[j] - c * u[j]
+        pull = scale * (g[j] - shift)
+        along += y * pull
+        squares += y * y
+        out[j] = pull - weight * y
+    return (1.0 - c) * along + c * weight * squares
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def log_density(x: NDArray[np.float64], gradient: NDArray[np.float64], data: NDArray[np.int64]) -> float:
+@compiled(REGROUPED)
+def _set_own(v: Floats, u: Floats, centring: Floats, log_sd: float, common: Floats, own: Floats) -> float:
+    """Every participant's abilities, ``common + subject_sd z[s]``; returns the log prior of ``v``."""
+    n_modes = common.shape[0]
+    free = n_modes - 1
+    logp = 0.0
+    for s in range(centring.shape[0]):
+        c = centring[s]
+        here = own[s * n_modes : (s + 1) * n_modes]
+        squares = _spread(v[s * free : (s + 1) * free], c, u, np.exp((1.0 - c) * log_sd), common, here)
+        logp -= 0.5 * squares * np.exp(-2.0 * c * log_sd) + free * c * log_sd
+    return logp
+
+
+@compiled(REGROUPED)
+def _set_own_slopes(
+    d_own: Floats,
+    v: Floats,
+    u: Floats,
+    centring: Floats,
+    log_sd: float,
+    d_common: Floats,
+    d_v: Floats,
+    d_u: Floats,
+) -> float:
+    """The adjoint of ``_set_own``; ``d_u`` is what comes by way of ``v``. Returns the slope in ``log_sd``."""
+    n_modes = d_common.shape[0]
+    free = n_modes - 1
+    slope = 0.0
+    for s in range(centring.shape[0]):
+        c = centring[s]
+        here, pull = d_own[s * n_modes : (s + 1) * n_modes], d_v[s * free : (s + 1) * free]
+        scale, weight = np.exp((1.0 - c) * log_sd), np.exp(-2.0 * c * log_sd)
+        slope += _gather(here, scale, v[s * free : (s + 1) * free], c, u, weight, pull) - free * c
+        for j in range(n_modes):
+            d_common[j] += here[j]
+        if c > 0.0:
+            for j in range(free):
+                d_u[j] -= c * pull[j]
+    return slope
+
+
+@compiled(REGROUPED)
+def _set_leads(own: Floats, a: Places, b: Places, side: float, eta: Floats) -> None:
+    """``eta = own[a] - own[b] + side``, cell by cell."""
+    for i in range(eta.shape[0]):
+        eta[i] = own[a[i]] - own[b[i]] + side
+
+
+@compiled(REGROUPED)
+def _add_lead_slopes(d_eta: Floats, a: Places, b: Places, d_own: Floats) -> float:
+    """The adjoint of ``_set_leads``; returns the slope in ``side``."""
+    total = 0.0
+    for i in range(d_eta.shape[0]):
+        d_own[a[i]] += d_eta[i]
+        d_own[b[i]] -= d_eta[i]
+        total += d_eta[i]
+    return total
+
+
+@compiled(REGROUPED)
+def _normal(x: float, sd: float, gradient: Floats, at: int) -> float:
+    """Log density of Normal(0, sd), its slope added."""
+    gradient[at] -= x / sd**2
+    return -0.5 * (x / sd) ** 2
+
+
+@compiled(REGROUPED)
+def _log_half_normal(log_x: float, sd: float, gradient: Floats, at: int) -> float:
+    """Log density of HalfNormal(sd) in the logarithm, Jacobian included, its slope added."""
+    square = (np.exp(log_x) / sd) ** 2
+    gradient[at] += 1.0 - square
+    return log_x - 0.5 * square
+
+
+@compiled(REGROUPED)
+def log_density(x: Floats, gradient: Floats, data: NDArray[np.int64]) -> float:
     """Log posterior density, up to a constant of x, at ``x``; its gradient goes to ``gradient``.
 
     Parameters
@@ -100,150 +201,62 @@ def log_density(x: NDArray[np.float64], gradient: NDArray[np.float64], data: NDA
     n_cells, n_modes, n_participants = data[_CELLS], data[_MODES], data[_PARTICIPANTS]
     levels, n_gaps = data[_LEVELS], data[_GAPS]
     is_adjacent, is_hierarchical, has_side = data[_ADJACENT] == 1, data[_HIERARCHICAL] == 1, data[_SIDE] == 1
+    at_centring = HEADER + N_REALS + levels
+    at_places = at_centring + n_participants
+    at_counts = at_places + n_cells
     scales = data[HEADER : HEADER + N_REALS].view(np.float64)
-    totals = data[HEADER + N_REALS : HEADER + N_REALS + levels]
-    cells = HEADER + N_REALS + levels
-    participant = data[cells : cells + n_cells]
-    mode_a = data[cells + n_cells : cells + 2 * n_cells]
-    mode_b = data[cells + 2 * n_cells : cells + 3 * n_cells]
-    counts = data[cells + 3 * n_cells : cells + (3 + levels) * n_cells]
-
+    totals = data[HEADER + N_REALS : at_centring].view(np.float64)
+    centring = data[at_centring:at_places].view(np.float64)
+    places = data[at_places:at_counts].view(np.uint32)
+    a, b = places[:n_cells], places[n_cells:]
+    counts = data[at_counts : at_counts + levels * n_cells].view(np.float64)
     free = n_modes - 1
-    gradient[:] = 0.0
-    logp = 0.0
-    for j in range(free):
-        logp -= 0.5 * (x[j] / scales[0]) ** 2
-        gradient[j] = -x[j] / scales[0] ** 2
-    at = free
-    side = 0.0
-    at_side = at
-    if has_side:
-        side = x[at]
-        logp -= 0.5 * (side / scales[1]) ** 2
-        gradient[at] = -side / scales[1] ** 2
-        at += 1
+    at_shape = free + (1 if has_side else 0)
+    at_spread = at_shape + (1 if is_adjacent else n_gaps)
+    at_own = at_spread + 1
 
-    at_shape = at
-    theta = np.zeros(levels - 1)
-    d_theta = np.zeros(levels - 1)
-    log_nu = 0.0
+    u, v = x[:free], x[at_own:]
+    side = x[free] if has_side else 0.0
+    common, zero = np.empty(n_modes), np.zeros(n_modes)
+    logp = -0.5 * _spread(u, 0.0, u, 1.0, zero, common) / scales[0] ** 2
+    own = common
+    if is_hierarchical:
+        own = np.empty(n_participants * n_modes)
+        logp += _set_own(v, u, centring, x[at_spread], common, own)
+    eta, d_eta = np.empty(n_cells), np.empty(n_cells)
+    _set_leads(own, a, b, side, eta)
+
+    gradient[free : at_own if is_hierarchical else at_spread] = 0.0
     if is_adjacent:
-        log_nu = x[at]
-        logp -= 0.5 * (log_nu / scales[3]) ** 2
-        gradient[at] = -log_nu / scales[3] ** 2
-        at += 1
+        log_nu = x[at_shape]
+        logp += adjacent(eta, counts, log_nu, d_eta, gradient[at_shape : at_shape + 1])
+        logp += _normal(log_nu, scales[3], gradient, at_shape)
     else:
+        half = levels // 2
+        theta, d_theta = np.zeros(levels - 1), np.zeros(levels - 1)
         cut = 0.0
-        half = levels // 2
-        for k in range(n_gaps):
-            gap = np.exp(x[at])
-            cut += gap
-            theta[half + k] = cut
-            theta[half - 1 - k] = -cut
-            # HalfNormal on the gap, and the Jacobian of its logarithm.
-            logp += x[at] - 0.5 * (gap / scales[2]) ** 2
-            gradient[at] = 1.0 - (gap / scales[2]) ** 2
-            at += 1
-
-    spread = 0.0
-    at_spread = at
-    if is_hierarchical:
-        spread = np.exp(x[at])
-        logp += x[at] - 0.5 * (spread / scales[4]) ** 2
-        gradient[at] = 1.0 - (spread / scales[4]) ** 2
-        at += 1
-
-    common = np.zeros(n_modes)
-    _spread(x[:free], 1.0, common)
-    d_common = np.zeros(n_modes)
-    own = np.zeros(n_modes)
-    d_own = np.zeros(n_modes)
-    d_side = 0.0
-    d_log_nu = 0.0
-    d_spread = 0.0
-    # Single answers share one logarithm: that of the product of their (1 + e).
-    product = 1.0
-    cell = 0
-    for s in range(n_participants):
-        start = at + s * free
-        if is_hierarchical:
-            own[:] = 0.0
-            _spread(x[start : start + free], 1.0, own)
-        d_own[:] = 0.0
-        while cell < n_cells and participant[cell] == s:
-            a, b = mode_a[cell], mode_b[cell]
-            eta = common[a] - common[b] + side
-            if is_hierarchical:
-                eta += spread * (own[a] - own[b])
-            row = cell * levels
-            d_eta = 0.0
-            if is_adjacent:
-                lost, tied, won = counts[row], counts[row + 1], counts[row + 2]
-                n = lost + tied + won
-                top = max(abs(eta) / 2, log_nu)
-                up, mid, down = np.exp(eta / 2 - top), np.exp(log_nu - top), np.exp(-eta / 2 - top)
-                total = up + mid + down
-                logp += (won - lost) * eta / 2 + tied * log_nu - n * (top + np.log(total))
-                d_eta = 0.5 * (won - lost - n * (up - down) / total)
-                d_log_nu += tied - n * mid / total
-            else:
-                for k in range(levels - 1):
-                    below, above = counts[row + k], counts[row + k + 1]
-                    if below + above == 0:
-                        continue
-                    t = theta[k] - eta
-                    e = np.exp(-abs(t))
-                    if t > 0.0:
-                        rising = e / (1.0 + e)
-                        logp -= above * t
-                    else:
-                        rising = 1.0 / (1.0 + e)
-                        logp += below * t
-                    if below + above == 1:
-                        product *= 1.0 + e
-                    else:
-                        logp -= (below + above) * np.log1p(e)
-                    # rising = 1 - logistic(t): the slope of log logistic(t).
-                    slope = below * rising - above * (1.0 - rising)
-                    d_theta[k] += slope
-                    d_eta -= slope
-            d_own[a] += d_eta
-            d_own[b] -= d_eta
-            d_side += d_eta
-            if is_hierarchical:
-                d_spread += d_eta * (own[a] - own[b])
-            cell += 1
-            if product > _NEAR_OVERFLOW:
-                logp -= np.log(product)
-                product = 1.0
-        for j in range(n_modes):
-            d_common[j] += d_own[j]
-        if is_hierarchical:
-            for j in range(start, start + free):
-                logp -= 0.5 * x[j] * x[j]
-                gradient[j] = -x[j]
-            _gather(d_own, spread, gradient[start : start + free])
-
-    logp -= np.log(product)
-
-    _gather(d_common, 1.0, gradient[:free])
-    if has_side:
-        gradient[at_side] += d_side
-    if is_adjacent:
-        gradient[at_shape] += d_log_nu
-    else:
-        for k in range(1, levels - 1):
-            width = theta[k] - theta[k - 1]
-            logp += totals[k] * np.log(-np.expm1(-width))
-            pull = totals[k] / np.expm1(width)
-            d_theta[k] += pull
-            d_theta[k - 1] -= pull
-        half = levels // 2
         for j in range(n_gaps):
-            total = 0.0
-            for k in range(j, n_gaps):
-                total += d_theta[half + k] - d_theta[half - 1 - k]
-            gradient[at_shape + j] += np.exp(x[at_shape + j]) * total
+            cut += np.exp(x[at_shape + j])
+            theta[half + j], theta[half - 1 - j] = cut, -cut
+            logp += _log_half_normal(x[at_shape + j], scales[2], gradient, at_shape + j)
+        logp += cumulative(eta, counts, totals, theta, d_eta, d_theta)
+        outward = 0.0
+        for j in range(n_gaps - 1, -1, -1):
+            outward += d_theta[half + j] - d_theta[half - 1 - j]
+            gradient[at_shape + j] += np.exp(x[at_shape + j]) * outward
+
+    d_own = np.zeros(own.shape[0])
+    d_side = _add_lead_slopes(d_eta, a, b, d_own)
+    d_common, d_u = d_own, np.zeros(free)
     if is_hierarchical:
-        gradient[at_spread] += spread * d_spread
+        d_common = np.zeros(n_modes)
+        gradient[at_spread] += _set_own_slopes(
+            d_own, v, u, centring, x[at_spread], d_common, gradient[at_own:], d_u
+        )
+        logp += _log_half_normal(x[at_spread], scales[4], gradient, at_spread)
+    if has_side:
+        gradient[free] += d_side
+        logp += _normal(side, scales[1], gradient, free)
+    _gather(d_common, 1.0, u, 0.0, u, 1.0 / scales[0] ** 2, gradient[:free])
+    gradient[:free] += d_u
     return logp

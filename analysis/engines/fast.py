@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from analysis.engines import nuts
+from analysis.engines.centring import centring
 from analysis.engines.density import packed
 from analysis.model import Problem
 from analysis.results import Draws, FitSettings
@@ -24,14 +25,14 @@ def sample(
     results = []
     for k, problem in enumerate(problems):
         chains = nuts.sample(
-            packed(problem),
+            packed(problem, centring(problem) if problem.model.hierarchical else None),
             problem.n_dim,
             problem.n_global,
             seed=question_seed(settings.seed, problem.counts.question.name),
             draws=settings.draws,
             tune=settings.tune,
             chains=settings.chains,
-            target_accept=settings.target_accept,
+            target_accept=settings.acceptance(problem.n_dim),
         )
         results.append(_named(problem, chains))
         done(k + 1)

@@ -14,9 +14,10 @@ from functools import cache
 from types import ModuleType
 
 import numpy as np
-from numba import carray, cfunc, types
+from numba import carray, types
 from numpy.typing import NDArray
 
+from analysis.engines.compiled import REGROUPED, c_function, compiled
 from analysis.engines.density import log_density
 from data.errors import ElbowroomError
 
@@ -26,16 +27,23 @@ _OK, _NOT_FINITE = 0, 4
 """Return codes of nutpie: 4 is an error the sampler recovers from, as a divergence."""
 
 
-@cfunc(
+@compiled(REGROUPED)
+def _are_finite(values: NDArray[np.float64]) -> bool:
+    """True if all are finite: 0 times infinity or nan is nan, and so is any sum with it."""
+    total = 0.0
+    for j in range(values.shape[0]):
+        total += 0.0 * values[j]
+    return total == 0.0
+
+
+@c_function(
     types.int64(
         types.uint64,
         types.CPointer(types.double),
         types.CPointer(types.double),
         types.CPointer(types.double),
         types.voidptr,
-    ),
-    cache=True,
-    error_model="numpy",
+    )
 )
 def _density(n_dim, position, gradient, logp, block):  # type: ignore[no-untyped-def]  # pragma: no cover
     size = carray(block, (1,), dtype=np.int64)[0]
@@ -44,17 +52,15 @@ def _density(n_dim, position, gradient, logp, block):  # type: ignore[no-untyped
     slope = carray(gradient, (n_dim,))
     value = log_density(x, slope, data)
     carray(logp, (1,))[0] = value
-    if not np.isfinite(value) or not np.all(np.isfinite(slope)):
+    if not np.isfinite(value) or not _are_finite(slope):
         return _NOT_FINITE
     return _OK
 
 
-@cfunc(
+@c_function(
     types.int64(
         types.uint64, types.uint64, types.CPointer(types.double), types.CPointer(types.double), types.voidptr
-    ),
-    cache=True,
-    error_model="numpy",
+    )
 )
 def _kept(n_dim, n_kept, position, out, block):  # type: ignore[no-untyped-def]  # pragma: no cover
     x = carray(position, (n_dim,))
@@ -118,39 +124,52 @@ def sample(
     """
     core = _core()
     block = np.concatenate([np.array([len(data)], dtype=np.int64), data])
-    settings = core.PyNutsSettings.Diag(seed)
-    settings.num_draws, settings.num_tune, settings.num_chains = draws, tune, chains
-    settings.target_accept = target_accept
-    sizes = {"kept": n_kept}
-    variables = core.PyVariable.new_variables(["x"], ["float64"], [(n_kept,)], sizes, {"x": ("kept",)})
     address = block.ctypes.data
-    model = core.PyMcModel(
-        core.LogpFunc(_density.address, address, block),
-        core.ExpandFunc(n_dim, n_kept, _kept.address, address, block),
-        variables,
-        n_dim,
-        sizes,
-        {},
-        lambda chain_seed: np.random.default_rng(chain_seed).uniform(-1.0, 1.0, n_dim),
-        None,
-    )
-    sampler = core.PySampler.from_pymc(
-        settings,
-        min(chains, cores or _usable_cores()),
-        model,
-        core.ProgressType.none(),
-        core.PyStorage.arrow(),
-    )
+    sizes = {"kept": n_kept}
+
+    def started(chain: int):  # type: ignore[no-untyped-def]
+        of_chain = int(np.random.SeedSequence([seed, chain]).generate_state(1, np.uint64)[0])
+        settings = core.PyNutsSettings.Diag(of_chain)
+        settings.num_draws, settings.num_tune, settings.num_chains = draws, tune, 1
+        settings.target_accept = target_accept
+        model = core.PyMcModel(
+            core.LogpFunc(_density.address, address, block),
+            core.ExpandFunc(n_dim, n_kept, _kept.address, address, block),
+            core.PyVariable.new_variables(["x"], ["float64"], [(n_kept,)], sizes, {"x": ("kept",)}),
+            n_dim,
+            sizes,
+            {},
+            lambda chain_seed: np.random.default_rng(chain_seed).uniform(-1.0, 1.0, n_dim),
+            None,
+        )
+        return core.PySampler.from_pymc(settings, 1, model, core.ProgressType.none(), core.PyStorage.arrow())
+
+    # The core keeps every coordinate and the gradient of every draw until a sampler is let go: 10 GB for four
+    # chains of 100,000 coordinates. So each chain has a sampler of its own, let go as soon as it is done.
+    found, running = [], []
     try:
-        sampler.wait(None)
+        for chain in range(chains):
+            running.append(started(chain))
+            if len(running) == (cores or _usable_cores()):
+                found.append(_finished(running[0], draws, n_kept))
+                del running[0]
+        while running:
+            found.append(_finished(running[0], draws, n_kept))
+            del running[0]
     except BaseException:
-        sampler.abort()
+        for sampler in running:
+            sampler.abort()
         raise
-    batches, stats = sampler.take_results().get_arrow_trace()
-    return Chains(
-        np.stack([_column(batch, "x")[-draws * n_kept :].reshape(draws, n_kept) for batch in batches]),
-        np.stack([_column(batch, "diverging")[-draws:] for batch in stats]),
-    )
+    positions, diverging = zip(*found, strict=True)
+    return Chains(np.stack(positions), np.stack(diverging))
+
+
+def _finished(sampler, draws: int, n_kept: int):  # type: ignore[no-untyped-def]
+    """Position and divergence of each draw of a sampler's only chain, once it is done."""
+    sampler.wait(None)
+    (batch,), (stats,) = sampler.take_results().get_arrow_trace()
+    position = _column(batch, "x")[-draws * n_kept :].reshape(draws, n_kept)
+    return position.copy(), _column(stats, "diverging")[-draws:].copy()
 
 
 def _column(batch, name):  # type: ignore[no-untyped-def]

@@ -10,6 +10,7 @@ from scipy.stats import halfnorm, norm
 
 from analysis.counts import count_responses
 from analysis.engines.density import log_density, packed
+from analysis.engines.exponential import exp, log_between_1_and_2
 from analysis.model import Model, Problem
 from analysis.zero_sum import zero_sum_basis
 from data.answers import MIRRORED
@@ -164,3 +165,23 @@ def test_the_zero_sum_basis_is_orthonormal_and_sums_to_zero(n):
     basis = zero_sum_basis(n)
     np.testing.assert_allclose(basis.T @ basis, np.eye(n - 1), atol=1e-12)
     np.testing.assert_allclose(basis.sum(axis=0), 0.0, atol=1e-12)
+
+
+def test_exponential_and_logarithm_are_numpys_to_the_last_places():
+    x = np.random.default_rng(6).uniform(-700, 700, size=2000)
+    np.testing.assert_allclose([exp(value) for value in x], np.exp(x), rtol=5e-16)
+    y = np.random.default_rng(7).uniform(1, 2, size=2000)
+    np.testing.assert_allclose([log_between_1_and_2(value) for value in y], np.log(y), rtol=0, atol=5e-16)
+
+
+def test_cells_of_many_blocks_add_up_like_cells_of_one(answers_of, truth, table_of):
+    # 1,800 cells take several blocks of the likelihood; their parts fit in one each.
+    rows = answers_of(truth, levels=5, participants=300)
+    model = Model(5, "cumulative", False, True, 1.0)
+    whole = count_responses(table_of(rows), table_of(rows).questions[0])
+    assert len(whole.mode_a) == 1800
+    x = np.random.default_rng(8).normal(size=5)
+    alone = replace(whole, participants=("",), participant=np.zeros_like(whole.participant))
+    assert value(Problem(alone, model), x) == pytest.approx(
+        value(Problem(whole.pooled(), model), x), abs=1e-9
+    )

@@ -59,3 +59,22 @@ def test_a_chain_of_another_width_does_not_pass():
     draws = autoregressive(0.0, (1, 4, 1000))
     draws[0, 3] *= 3.0
     assert not convergence(draws).passed
+
+
+def test_a_constant_has_all_the_draws_and_chains_constant_at_different_values_never_pass():
+    draws = np.full((2, 4, 1000), 3.0)
+    draws[1, 2] = 4.0
+    found = convergence(draws)
+    assert found.rhat[0] == 1.0
+    assert found.ess_bulk[0] == found.ess_tail[0] == 4000.0
+    assert found.rhat[1] == np.inf
+    assert not found.passed
+
+
+def test_many_quantities_have_the_diagnostics_of_each():
+    draws = autoregressive(0.5, (70, 4, 50))
+    draws[::3] = np.round(draws[::3])
+    together = convergence(draws)
+    for q in (0, 1, 31, 32, 69):
+        alone = convergence(draws[q : q + 1])
+        assert (together.rhat[q], together.ess_bulk[q]) == (alone.rhat[0], alone.ess_bulk[0])

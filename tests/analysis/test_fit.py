@@ -217,12 +217,23 @@ def test_longer_sampling_is_enough_where_it_mixes_slowly(simulated, monkeypatch)
     assert question.draws.ability.shape == (4, 1000, 3)
 
 
-def test_every_reported_quantity_is_behind_the_gate(simulated):
+def test_the_diagnostics_of_a_question_are_the_worst_of_what_it_reports(simulated):
     question = fit(simulated(5), SETTINGS).questions[0]
     assert question.draws is not None
+    ability = question.draws.ability
     spread = convergence(question.draws.parameters["subject_sd"][None])
-    assert question.ess_min <= spread.ess_min
-    assert question.rhat_max >= spread.rhat_max
+    lead = convergence((ability[..., 0] - ability[..., 1])[None])
+    rank = convergence(1.0 + (ability > ability[..., :1]).sum(axis=-1)[None])
+    for quantity in (spread, lead, rank):
+        assert question.ess_min <= quantity.ess_min
+        assert question.rhat_max >= quantity.rhat_max
+
+
+def test_the_sampler_takes_bolder_steps_in_many_dimensions_alone():
+    settings = FitSettings()
+    assert settings.acceptance(9_999) == settings.target_accept == 0.8
+    assert settings.acceptance(10_000) == pytest.approx(0.65)
+    assert replace(settings, target_accept=0.95).acceptance(10_000) > 0.7
 
 
 @pytest.mark.parametrize(

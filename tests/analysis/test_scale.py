@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 
 from analysis.counts import count_responses
-from analysis.diagnostics import convergence
 from analysis.engines.gibbs import is_proper
 from analysis.fit import MOST_MODES, fit
 from analysis.results import FitSettings, QuestionFit
@@ -53,13 +52,6 @@ def test_the_engines_agree_on_scales_of_two_three_and_five_levels(simulated, tab
         for name, (mean, sd) in a.items():
             assert b[name][0] == pytest.approx(mean, abs=slack * sd), (one.question.name, name)
             assert b[name][1] == pytest.approx(sd, rel=slack), (one.question.name, name)
-
-
-def test_pair_probabilities_and_worths_are_behind_the_gate(simulated):
-    question = fit(simulated(3, participants=7), SETTINGS).questions[0]
-    worth = convergence(np.moveaxis(question.draws.worth, -1, 0))
-    assert question.ess_min <= worth.ess_min
-    assert question.rhat_max >= worth.rhat_max
 
 
 @pytest.mark.parametrize(
