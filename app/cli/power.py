@@ -1,109 +1,135 @@
-"""`elbowroom power`: how many participants a study needs."""
+"""`elbowroom power`: how many participants and repetitions a study needs."""
 
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.options import CORES, JobsOption, OutOption, SeedOption, StudyOption
-from data.errors import InputError
+from app.cli.options import CORES, JobsOption, SeedOption, StudyOption
+
+if TYPE_CHECKING:
+    from analysis.power import Power
 
 
 def power(
-    out: OutOption,
     study: StudyOption = "carmichael2017",
     participants: Annotated[
-        str, typer.Option("--participants", metavar="N,N,...", help="Numbers of participants to try.")
-    ] = "7,14,20,30,45",
-    repetitions: Annotated[
-        int | None,
+        str,
         typer.Option(
-            "--repetitions", min=1, max=50, help="How often a person sees each pair. Default: the study's."
+            "--participants", metavar="N,N,...", help="Numbers to try. Default: 1 to 6 times the planned one."
         ),
-    ] = None,
+    ] = "",
+    repetitions: Annotated[
+        str,
+        typer.Option(
+            "--repetitions",
+            metavar="N,N,...",
+            help="How often a person sees each pair. Default: the study's.",
+        ),
+    ] = "",
     worth: Annotated[
-        str | None,
+        str,
         typer.Option(
             "--worth",
             metavar="X,X,...",
             help="Planted worth of each mode, in the study's order. Default: the last is twice as good.",
         ),
+    ] = "",
+    levels: Annotated[
+        int | None,
+        typer.Option("--levels", metavar="2|3|5", help="Levels of the scale. Default: the study's fewest."),
     ] = None,
-    levels: Annotated[int, typer.Option("--levels", metavar="2|3|5", help="Levels of the scale.")] = 3,
+    ties: Annotated[
+        float | None,
+        typer.Option("--ties", metavar="SHARE", help="Share of answers “about the same”, such as 0.2."),
+    ] = None,
     cuts: Annotated[
-        str | None,
+        str,
         typer.Option(
-            "--cuts", metavar="X,X", help="Cut-points [logit]: larger, more ties. Default: 0.5, or 0.5,1.5."
+            "--cuts", metavar="X,X", help="Cut-points [logit] instead of ties. Default: 0.5, or 0.5,1.5."
         ),
-    ] = None,
+    ] = "",
     subject_sd: Annotated[
-        float, typer.Option("--subject-sd", min=0, max=10, help="Differences between people [logit].")
+        float, typer.Option("--subject-sd", help="Differences between people [logit].")
     ] = 0.7,
-    side_effect: Annotated[
-        float, typer.Option("--side-effect", min=-10, max=10, help="Preference for side A [logit].")
-    ] = 0.1,
+    side_effect: Annotated[float, typer.Option("--side-effect", help="Preference for side A [logit].")] = 0.1,
+    conclusion: Annotated[
+        str,
+        typer.Option(
+            "--conclusion",
+            metavar="best|order|M1:M3",
+            help="What is to be found: the best mode, the whole order, or the better of two.",
+        ),
+    ] = "best",
     confidence: Annotated[
-        float, typer.Option("--confidence", min=0.5, max=0.999, help="P(best) that counts as a conclusion.")
+        float, typer.Option("--confidence", help="Probability above which it counts as found.")
     ] = 0.95,
-    wanted: Annotated[
-        float, typer.Option("--wanted", min=0.01, max=0.99, help="Share of right conclusions wanted.")
-    ] = 0.8,
-    replicates: Annotated[
-        int, typer.Option("--replicates", min=10, max=100_000, help="Simulated studies of each size.")
-    ] = 100,
+    wanted: Annotated[float, typer.Option("--wanted", help="Share of right conclusions wanted.")] = 0.8,
+    replicates: Annotated[int, typer.Option("--replicates", help="Simulated studies of each size.")] = 100,
     seed: SeedOption = 2017,
     jobs: JobsOption = CORES,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder for the table and the figure.")
+    ] = None,
 ) -> None:
-    """How often studies of different sizes would find the best mode, if people were as assumed.
+    """How often studies of different sizes would find what is planted, if people were as assumed.
+
+    Every simulated study follows the study's schedule and is fitted as a report would fit it.
 
     Example: elbowroom power --study carmichael2017 --worth 1,1,2 --participants 7,20,45 --out power
     """
-    from analysis.power import POWER_TABLE, Scenario, check_scenario, write_power
+    from analysis.power import POWER_TABLE, write_power
     from analysis.power import power as run_power
     from app.cli.progress import progress
+    from app.planning import Wish, plan_of
     from app.studies import open_study
     from data.locations import check_folder
 
-    opened = open_study(study).study
-    if repetitions is not None:
-        protocol = opened.protocol.model_copy(update={"repetitions": repetitions})
-        opened = opened.model_copy(update={"protocol": protocol})
-    default_cuts = {2: "", 3: "0.5", 5: "0.5,1.5"}.get(levels, "")
-    scenario = Scenario(
-        worth=_numbers("--worth", worth or ",".join(["1"] * (len(opened.modes) - 1) + ["2"])),
+    wish = Wish(
+        worth=worth,
+        participants=participants,
+        repetitions=repetitions,
         levels=levels,
-        cuts=_numbers("--cuts", default_cuts if cuts is None else cuts),
+        cuts=cuts,
+        ties=ties,
         subject_sd=subject_sd,
         side_effect=side_effect,
+        conclusion=conclusion,
         confidence=confidence,
+        wanted=wanted,
+        replicates=replicates,
+        seed=seed,
     )
-    check_scenario(opened, scenario)
-    sizes = [int(n) for n in _numbers("--participants", participants)]
-    if not sizes or min(sizes) < 1 or max(sizes) > 100_000:
-        raise InputError(f"--participants: {participants!r}: whole numbers from 1 to 100000, such as 7,20,45")
-    check_folder(out, POWER_TABLE)
+    plan = plan_of(open_study(study).study, wish)
+    if out is not None:
+        check_folder(out, POWER_TABLE)
     with progress("Simulated studies") as report:
-        result = run_power(
-            opened, scenario, sizes, replicates=replicates, seed=seed, n_jobs=jobs, progress=report
-        )
-    paths = write_power(result, wanted, out)
-    for point in result.points:
-        bar, wrong = "█" * round(30 * point.right_share), 100 * point.wrong / point.replicates
-        interval = f"[{100 * point.low:.0f}, {100 * point.high:.0f}]"
-        print(
-            f"{point.participants:>6} participants  {bar:<30} {100 * point.right_share:3.0f} % right "
-            f"{interval}, {wrong:.0f} % wrong"
-        )
-    enough = result.enough(wanted)
-    if enough is None:
-        print(f"None of these sizes finds the best mode in {100 * wanted:.0f} % of studies: try more.")
-    else:
-        print(f"{enough} participants are the fewest tried that find it in {100 * wanted:.0f} % of studies.")
-    print(f"If people are as assumed (simulated for planning): {scenario.sentence}.")
-    print("\n".join(str(path) for path in paths))
+        result = run_power(plan, n_jobs=jobs, progress=report)
+    paths = write_power(result, out) if out is not None else ()
+    _print(result)
+    print("\n".join(str(path) for path in paths), end="\n" if paths else "")
 
 
-def _numbers(option: str, text: str) -> tuple[float, ...]:
-    try:
-        return tuple(float(part) for part in text.split(",") if part.strip())
-    except ValueError:
-        raise InputError(f"{option}: {text!r} is no list of numbers, such as 1,1,2") from None
+def _print(result: "Power") -> None:
+    """The curve in bars, the answer, and what was assumed."""
+    from analysis.power import sentences, showings, tie_share
+    from analysis.power.plan import mode_pairs
+
+    plan = result.plan
+    for repetitions in result.repetitions:
+        if len(result.repetitions) > 1:
+            print(showings(repetitions))
+        for p in result.of(repetitions):
+            bar = "█" * round(30 * p.right_share)
+            right = f"{100 * p.right_share:3.0f} % right [{100 * p.right_low:.0f}, {100 * p.right_high:.0f}]"
+            wrong = f"{100 * p.wrong_share:.0f} % wrong [{100 * p.wrong_low:.0f}, {100 * p.wrong_high:.0f}]"
+            lost = f", {p.unranked} not converged" if p.unranked else ""
+            print(
+                f"{p.participants:>6} participants {p.answers:>6} answers  {bar:<30} {right}, {wrong}{lost}"
+            )
+    print("\n".join(sentences(result)))
+    print(f"Right is: {plan.conclusion.sentence(plan.study.mode_names)}.")
+    ties = tie_share(mode_pairs(plan.study), plan.scenario)
+    same = f", {100 * ties:.0f} % of answers “about the same”" if plan.scenario.cuts else ""
+    print(f"Simulated for planning, if people are so: {plan.scenario.sentence}{same}.")
+    print(f"In brackets: 94 % intervals, from {plan.replicates} simulated studies of each size.")
