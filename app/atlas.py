@@ -1,4 +1,4 @@
-"""The atlas of a study's modes: one page from which a researcher chooses what to compare."""
+"""The atlas of modes: one page from which a researcher chooses what to compare."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,24 +6,31 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from data.study import Study
+from app.atlas_tables import (
+    CURVES_SAY,
+    LAPS_SAY,
+    Cells,
+    by_method,
+    claims,
+    curves_table,
+    laps_table,
+    names,
+    parameters_table,
+    verdicts,
+)
+from data.study import Mode, Study
 
 if TYPE_CHECKING:
-    import numpy as np
-    from matplotlib.axes import Axes
-
     from analysis.figures.style import Drawing
     from sim_trials.batch import Progress
     from sim_trials.mode_atlas import ModeCurves
     from sim_trials.mode_laps import ModeLaps
+    from sim_trials.modes.method import ResolvedMode
 
 PAGE = "atlas.html"
 """What `write_atlas` calls the page."""
 OPERATORS = 6
 """How many simulated operators do a lap under each mode, if nobody says otherwise."""
-
-_ROW_PX, _TOP_PX, _LEFT_PX, _GAP_PX = 96, 44, 118, 26
-_MOST_SIGMA, _MOST_DAMPING = 0.32, 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +49,24 @@ class Atlas:
     curves: "tuple[ModeCurves, ...]"
     laps: "tuple[ModeLaps, ...]"
     drawing: "Drawing"
+
+
+def with_every_method(study: Study) -> Study:
+    """The study whose modes can be simulated, and behind them every known method at its defaults.
+
+    A method bears its own name as a mode, with an ending if the study calls a mode so.
+    """
+    from sim_trials.modes.registry import METHODS
+
+    modes = tuple(mode for mode in study.modes if mode.method in METHODS)
+    taken = {mode.name for mode in study.modes}
+    known = (Mode(name=f"{name}.default" if name in taken else name, method=name) for name in METHODS)
+    return study.model_copy(update={"modes": (*modes, *known)})
+
+
+def with_modes(study: Study, names: Sequence[str]) -> Study:
+    """The study with those of its modes alone, in its own order."""
+    return study.model_copy(update={"modes": tuple(mode for mode in study.modes if mode.name in names)})
 
 
 def study_atlas(
@@ -66,6 +91,7 @@ def study_atlas(
     InputError
         If a mode has no method, or the mode or the maze can't be had.
     """
+    from app.atlas_drawing import draw_curves
     from app.studies import resolved_modes
     from sim_trials.mode_atlas import mode_curves
     from sim_trials.mode_laps import mode_laps
@@ -89,152 +115,48 @@ def write_atlas(atlas: Atlas, folder: Path) -> list[Path]:
     return [folder / PAGE, *(folder / f"{atlas.drawing.name}.{kind}" for kind in ("svg", "png"))]
 
 
-def draw_curves(curves: "Sequence[ModeCurves]") -> "Drawing":
-    """Gain, damping and joint speed against sigma: a row a mode, all others faint behind it."""
-    from analysis.figures.labels import fitted
-    from analysis.figures.style import INK, INK_2, WIDTH_PX, finish, house_style, new_figure, write_text
-
-    titles = ("gain", "damping \u03bb it amounts to", "fastest joint, share of its limit")
-    width = (WIDTH_PX - _LEFT_PX - 2 * _GAP_PX - 8) / 3
-    with house_style():
-        figure = new_figure(_TOP_PX + len(curves) * _ROW_PX + 34)
-        for column, title in enumerate(titles):
-            left = _LEFT_PX + column * (width + _GAP_PX)
-            write_text(figure, left, 16, title, fontsize=9, color=INK)
-            most = (1.08, _MOST_DAMPING, _most_speed(curves))[column]
-            for row, shown in enumerate(curves):
-                axes = _panel(figure, left, _TOP_PX + row * _ROW_PX, width, most, row == len(curves) - 1)
-                for other in curves:
-                    _draw_pair(axes, other, column, most, is_shown=False)
-                _draw_pair(axes, shown, column, most, is_shown=True)
-        write_text(figure, 0, 16, "solid: towards the lock", fontsize=7.8, color=INK_2)
-        write_text(figure, 0, 29, "dashed: out of it", fontsize=7.8, color=INK_2)
-        for row, shown in enumerate(curves):
-            middle = _TOP_PX + row * _ROW_PX + 0.4 * _ROW_PX
-            name = fitted(shown.mode.name, _LEFT_PX - 24, 9.6, bold=True)
-            write_text(figure, 0, middle, name, fontsize=9.6, color=INK, weight="bold")
-            method = fitted(shown.mode.method.name, _LEFT_PX - 24, 7.8)
-            write_text(figure, 0, middle + 14, method, fontsize=7.8)
-        bottom = _TOP_PX + len(curves) * _ROW_PX + 22
-        write_text(
-            figure, _LEFT_PX, bottom, "smallest singular value \u03c3; the lock is at the right", fontsize=8.2
-        )
-        names = ", ".join(shown.mode.name for shown in curves)
-        alt = f"Gain, equivalent damping and fastest joint against the smallest singular value for {names}"
-        return finish(figure, "mode_atlas", alt)
-
-
-def _most_speed(curves: "Sequence[ModeCurves]") -> float:
-    return max(0.2, 1.1 * max(float(c.joint_speed.max()) for m in curves for c in (m.towards, m.away)))
-
-
-def _panel(figure: object, left: float, top: float, width: float, most: float, is_last: bool) -> "Axes":
-    from analysis.figures.style import LINE_STRONG, place_axes
-
-    axes = place_axes(figure, left, top, width, _ROW_PX - 22)  # type: ignore[arg-type]
-    axes.set_xlim(_MOST_SIGMA, 0.0)
-    axes.set_ylim(0.0, most)
-    axes.set_yticks([0.0, round(most / 2.16, 1), round(most / 1.08, 1)])
-    axes.set_xticks([0.3, 0.2, 0.1, 0.0], ["0.3", "0.2", "0.1", "0"] if is_last else [""] * 4)
-    axes.tick_params(labelsize=7.6)
-    for side in ("left", "bottom"):
-        axes.spines[side].set_visible(True)
-        axes.spines[side].set_color(LINE_STRONG)
-        axes.spines[side].set_linewidth(0.8)
-    return axes
-
-
-def _draw_pair(axes: "Axes", curves: "ModeCurves", column: int, most: float, is_shown: bool) -> None:
-    from analysis.figures.style import DATA, LINE
-
-    for curve, dashes in ((curves.towards, "-"), (curves.away, (0, (3.5, 2)))):
-        values = (curve.gain, curve.damping, curve.joint_speed)[column]
-        axes.plot(
-            curves.sigma,
-            _cut(values, most),
-            linestyle=dashes,
-            color=DATA if is_shown else LINE,
-            linewidth=1.7 if is_shown else 0.8,
-            zorder=3 if is_shown else 1,
-        )
-
-
-def _cut(values: "np.ndarray", most: float) -> "np.ndarray":
-    """What lies beyond the panel runs along its edge: a mode that stands still is damped without bound."""
-    import numpy as np
-
-    return np.minimum(values, most)
-
-
 def atlas_page(atlas: Atlas) -> str:
     """The atlas as one HTML page that needs no other file."""
     study = atlas.study
     laps = ""
     if atlas.laps:
-        laps = (
-            f"<h2>On the maze</h2><p>First laps of {len(atlas.laps[0].laps)} simulated operators, and one "
-            "live lap of the scripted hand. Joint speed is the fastest joint's, as a share of its limit: the "
-            "robot stops itself at 0.98. Chatter counts jumps of the command to and fro that the robot "
-            f"cannot follow. Simulated people, not real ones.</p>{_lap_table(atlas.laps)}"
-        )
+        said = LAPS_SAY.format(n=len(atlas.laps[0].laps))
+        laps = f"<h2>On the maze</h2><p>{escape(said)}</p>{_table(laps_table(atlas.laps))}"
+        laps += f"<ul>{''.join(f'<li>{escape(said)}</li>' for said in verdicts(atlas.laps))}</ul>"
     return f"""<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>Modes of {escape(study.name)}</title>
 <style>{_CSS}</style></head><body>
 <h1>Modes of {escape(study.name)}</h1><p>{escape(study.title)}</p>
 <h2>Into the lock and out of it</h2>
-<p>The arm is stretched step by step from the start of the lap, and each mode is asked for 0.1 m/s along the
-one direction that the elbow-lock takes away. Its gain is what it gives of that. Every gain is also said as
-the damping of damped least squares that would give the same, so that filters and limits can be compared
-with dampings.</p>
+<p>{escape(CURVES_SAY)}</p>
 {atlas.drawing.svg}
+{_table(curves_table(atlas.curves))}
 {laps}
-<h2>Rules</h2>{"".join(_rule(curves) for curves in atlas.curves)}
+<h2>Rules</h2>{"".join(map(_rule, by_method([curves.mode for curves in atlas.curves])))}
 </body></html>
 """
 
 
-def _lap_table(laps: "Sequence[ModeLaps]") -> str:
-    heads = (
-        "Mode",
-        "Done",
-        "Stuck",
-        "Stopped",
-        "Joint speed",
-        "Edge force [N]",
-        "Exit gain",
-        "Chatter [1/s]",
+def _table(cells: Cells) -> str:
+    def cell(k: int, text: str, tag: str = "td") -> str:
+        kind = "" if k in cells.numbers else " class=words"
+        return f"<{tag}{kind}>{escape(text)}</{tag.split()[0]}>"
+
+    head = "".join(cell(k, text, "th scope=col") for k, text in enumerate(cells.head))
+    body = "".join(
+        f"<tr>{cell(0, row[0], 'th scope=row')}{''.join(cell(k, row[k]) for k in range(1, len(row)))}</tr>"
+        for row in cells.rows
     )
-    rows = "".join(
-        f"<tr><th>{escape(lap.name)}</th><td>{lap.share('completed'):.2f}</td><td>{lap.share('stuck'):.2f}</td>"
-        f"<td>{lap.share('failed'):.2f}</td><td>{lap.peak_joint_speed:.2f}</td>"
-        f"<td>{_number(lap.mean('force_edge_n'), 1)}</td><td>{_number(lap.mean('gain_exit'), 2)}</td>"
-        f"<td>{lap.mean('chatter_hz'):.2f}</td>"
-        f"<td>{escape(lap.live_outcome)}, {lap.live_duration_s:.0f} s</td>"
-        f"<td class=words>{escape(lap.verdict)}</td></tr>"
-        for lap in laps
-    )
-    head = "".join(f"<th>{text}</th>" for text in (*heads, "Live", "Verdict"))
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def _number(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if value == value else "\u2013"
-
-
-def _rule(curves: "ModeCurves") -> str:
-    mode, method = curves.mode, curves.mode.method
-    rows = "".join(
-        f"<tr><th>{escape(p.name)}</th><td>{value:g} {escape(p.unit)}</td><td>{p.low:g} to {p.high:g}</td>"
-        f"<td class=words>{escape(p.meaning)}</td></tr>"
-        for p, value in zip(method.parameters, mode.values, strict=True)
-    )
-    claims = ", ".join(sorted(str(claim).replace("_", " ") for claim in method.properties)) or "none"
+def _rule(modes: "Sequence[ResolvedMode]") -> str:
+    method = modes[0].method
     return (
-        f"<section><h3>{escape(mode.name)} <small>{escape(method.name)}</small></h3>"
+        f"<section><h3>{escape(method.name)} <small>{escape(names(modes))}</small></h3>"
         f"<p>{escape(method.summary)}.</p><p class=equation>{escape(method.equation)}</p>"
-        f"<table><tbody>{rows}</tbody></table>"
-        f"<p class=source>{escape(method.source)}. Tested claims: {escape(claims)}. One call takes "
-        f"{curves.cost_ns / 1000:.1f} \u00b5s on this machine.</p></section>"
+        f"{_table(parameters_table(modes))}"
+        f"<p class=source>{escape(method.source)}. Tested claims: {escape(claims(method))}.</p></section>"
     )
 
 
@@ -242,11 +164,11 @@ _CSS = """
 body{font:15px/1.5 system-ui,sans-serif;color:#1D2930;background:#fff;
  max-width:1060px;margin:32px auto;padding:0 24px}
 h1{font-size:25px;margin:0}h2{font-size:18px;margin:34px 0 6px}h3{font-size:15px;margin:24px 0 2px}
-small{font-weight:400;color:#66747D}p{margin:4px 0 10px;color:#4C5B65;max-width:72ch}
+small{font-weight:400;color:#66747D}p,li{color:#4C5B65;max-width:80ch}p{margin:4px 0 10px}
 svg{max-width:100%;height:auto}
 table{border-collapse:collapse;font-size:13.5px;font-variant-numeric:tabular-nums}
 th,td{text-align:right;padding:4px 10px;border-bottom:1px solid #DDE1DE;vertical-align:baseline}
-th:first-child,.words{text-align:left}thead th{color:#66747D;font-weight:400}
+.words{text-align:left}thead th{color:#66747D;font-weight:400}
 .equation{font-family:ui-monospace,monospace;font-size:13px;color:#1D2930;max-width:none}.source{font-size:13px}
 section{break-inside:avoid}
 """

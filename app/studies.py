@@ -1,5 +1,6 @@
 """Opening a study whole: its file, and its modes against the registry of methods."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -68,6 +69,23 @@ def resolved_modes(study: Study, where: str) -> "tuple[ResolvedMode, ...]":
         return tuple(resolve(mode) for mode in study.modes)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
+
+
+def cautions(study: Study, modes: "Sequence[ResolvedMode]") -> tuple[str, ...]:
+    """What a researcher must know of a study's modes though the study is valid: a sentence each.
+
+    Parameters
+    ----------
+    study : Study
+    modes : sequence of ResolvedMode
+        Empty for a study of a robot in the lab.
+    """
+    if not modes:
+        return ()
+    from sim_trials.standstill import caution
+
+    said = {f"mode {mode.name} ({mode.method.name})": caution(mode, study.maze) for mode in modes}
+    return tuple(f"{who} {what}" for who, what in said.items() if what)
 
 
 def check_can_be_simulated(study: Study, where: str) -> None:

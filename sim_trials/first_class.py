@@ -1,7 +1,7 @@
 """Functions by their addresses, for compiled code that Python calls every few milliseconds.
 
 Numba looks up the type and the address of a function each time it is passed as an argument: 20 to 80 us,
-more than a control tick. X of it, at no cost, the same
+more than a control tick. An address is a plain number, and compiled code makes of it, at no cost, the same
 first-class function that the argument would have been.
 """
 

@@ -63,7 +63,7 @@ class ModeCurves:
     sigma : ndarray, shape (n,)
         Smallest singular value at the poses, falling.
     cost_ns : float
-        Of one call at sigma = 0.1, the best of several runs on this machine.
+        Processor time of one call at sigma = 0.1, the best of several runs on this machine.
     """
 
     mode: ResolvedMode
@@ -99,23 +99,24 @@ def mode_curves(mode: ResolvedMode, maze: Maze | None = None) -> ModeCurves:
     maze : Maze, optional
         From whose start the arm is stretched; the default maze if left out.
     """
-    start = np.array(start_angles(maze or Maze()))
+    poses = stretched(maze or Maze())
     sigma = np.empty(POSES)
     answers = np.empty((2, 3, POSES))
     limits = np.array(JOINT_SPEED_LIMITS_RAD_S)
-    for place, q in enumerate(_poses(start)):
+    for place, q in enumerate(poses):
         J, direction, sigma[place] = _lost_direction(q)
         for way, xdot in enumerate((-direction, direction)):
-            qdot = _settled(mode, q, J, sigma[place], COMMAND * xdot)
+            qdot = answer(mode, q, J, sigma[place], COMMAND * xdot)
             gain = float(xdot @ J @ qdot) / COMMAND
             answers[way, 0, place] = gain
             answers[way, 1, place] = _damping(sigma[place], gain)
             answers[way, 2, place] = np.abs(qdot / limits).max()
-    return ModeCurves(mode, sigma, Curve(*answers[0]), Curve(*answers[1]), _cost_ns(mode, start))
+    return ModeCurves(mode, sigma, Curve(*answers[0]), Curve(*answers[1]), _cost_ns(mode, poses[0]))
 
 
-def _poses(start: np.ndarray) -> list[np.ndarray]:
-    """The start with its elbow stretched step by step, evenly in the elbow's angle to the power 1/2."""
+def stretched(maze: Maze) -> list[np.ndarray]:
+    """The start of the lap with its elbow stretched step by step, evenly in its angle to the power 1/2."""
+    start = np.array(start_angles(maze))
     elbows = np.linspace(np.sqrt(start[_ELBOW]), np.sqrt(NEAREST_ELBOW_RAD), POSES) ** 2
     poses = np.tile(start, (POSES, 1))
     poses[:, _ELBOW] = elbows
@@ -134,7 +135,8 @@ def _lost_direction(q: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
     return J, sign * U[5], sigma
 
 
-def _settled(mode: ResolvedMode, q: np.ndarray, J: np.ndarray, sigma: float, xdot: np.ndarray) -> np.ndarray:
+def answer(mode: ResolvedMode, q: np.ndarray, J: np.ndarray, sigma: float, xdot: np.ndarray) -> np.ndarray:
+    """Joint velocities [rad/s] once a mode has been asked for the same for a second; shape (6,)."""
     memory, qdot = np.zeros(MEMORY_LENGTH), np.empty(6)
     repeat(mode.function, q, J, sigma, xdot, mode.packed(), memory, qdot, SETTLING_TICKS)
     return qdot
@@ -154,7 +156,7 @@ def _cost_ns(mode: ResolvedMode, start: np.ndarray) -> float:
     xdot, parameters = -COMMAND * direction, mode.packed()
     best = np.inf
     for _ in range(_COST_RUNS):
-        begin = time.perf_counter()
+        begin = time.thread_time()
         repeat(mode.function, q, J, sigma, xdot, parameters, memory, qdot, _COST_CALLS)
-        best = min(best, time.perf_counter() - begin)
+        best = min(best, time.thread_time() - begin)
     return best / _COST_CALLS * 1e9

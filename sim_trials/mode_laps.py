@@ -21,6 +21,7 @@ from sim_trials.modes.registry import resolve
 from sim_trials.operators import draw_operator
 from sim_trials.scripted_hand import ScriptedHand
 from sim_trials.singular_value import smallest_singular_value
+from sim_trials.standstill import caution
 from sim_trials.trace import Trace
 from sim_trials.trial import OUTCOMES, mode_of, simulate
 
@@ -59,12 +60,19 @@ class LapOfMode:
 
 @dataclass(frozen=True)
 class ModeLaps:
-    """A mode on the maze: laps of simulated operators, and one live lap of the scripted hand."""
+    """A mode on the maze: laps of simulated operators, and one live lap of the scripted hand.
+
+    Attributes
+    ----------
+    caution : str
+        See `standstill.caution`.
+    """
 
     name: str
     laps: tuple[LapOfMode, ...]
     live_outcome: Outcome
     live_duration_s: float
+    caution: str = ""
 
     def share(self, outcome: Outcome) -> float:
         """Share of the laps with an outcome."""
@@ -82,16 +90,23 @@ class ModeLaps:
         return max(lap.peak_joint_speed for lap in self.laps)
 
     @property
+    def can_be_done(self) -> bool:
+        """Whether every lap was finished, the live one too."""
+        return self.live_outcome == "completed" and all(lap.outcome == "completed" for lap in self.laps)
+
+    @property
     def verdict(self) -> str:
         """Whether laps can be done under the mode, and if not, what stands against it."""
-        missing = [lap for lap in self.laps if lap.outcome != "completed"]
-        if not missing and self.live_outcome == "completed":
+        if self.can_be_done:
             return "laps are done"
-        reasons = [] if self.live_outcome == "completed" else [f"live lap {self.live_outcome}"]
+        reasons = [self.caution] if self.caution else []
+        missing = [lap for lap in self.laps if lap.outcome != "completed"]
         for ending, n in Counter(lap.ending for lap in missing).most_common():
             sigma = float(np.median([lap.last_sigma for lap in missing if lap.ending == ending]))
             why = _REASONS.get(ending, OUTCOMES[ending])
             reasons.append(f"{n} of {len(self.laps)} laps {why} (sigma {sigma:.3f})")
+        if self.live_outcome != "completed":
+            reasons.append(_LIVE[self.live_outcome])
         return "; ".join(reasons)
 
 
@@ -99,6 +114,11 @@ _REASONS = {
     STUCK: "get stuck in elbow-lock",
     STOPPED: "end in a protective stop: a joint too fast",
     TIMED_OUT: "get no further and are given up",
+}
+_LIVE: dict[Outcome, str] = {
+    "stuck": "the live lap gets stuck",
+    "failed": "the live lap ends in a protective stop",
+    "abandoned": "the live lap gets no further and is given up",
 }
 
 
@@ -120,12 +140,12 @@ def mode_laps(study: Study, name: str, operators: Sequence[int] = range(6), n_jo
     InputError
         If the study has no such mode, or the mode or the maze can't be had.
     """
-    resolve(mode_of(study, name))
+    mode = resolve(mode_of(study, name))
     laps = tuple(map_jobs(_lap, [(study, name, seed) for seed in operators], n_jobs))
     trial, hand = LiveTrial(study, name), ScriptedHand(study)
     while trial.ending is None:
         trial.advance(hand.aim(trial.view, CONTROL_PERIOD_S))
-    return ModeLaps(name, laps, OUTCOMES[trial.ending], trial.time_s)
+    return ModeLaps(name, laps, OUTCOMES[trial.ending], trial.time_s, caution(mode, study.maze))
 
 
 def chatter_hz(trace: Trace, study: Study, name: str) -> float:

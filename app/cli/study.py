@@ -40,10 +40,12 @@ def check(source: Source) -> None:
 
     Example: elbowroom study check my_study.toml
     """
-    from app.studies import check_can_be_run, open_study
+    from app.planning import expectation
+    from app.studies import cautions, check_can_be_run, open_study
     from data.schedule import plan_session
 
-    study = open_study(source).study
+    opened = open_study(source)
+    study = opened.study
     check_can_be_run(study, source)
     comparisons = len(plan_session(study, 1))
     print(
@@ -51,6 +53,9 @@ def check(source: Source) -> None:
         f"{len(study.modes)} modes, {len(study.questions)} questions, "
         f"{comparisons} comparisons a participant, hash {study.sha256[:12]}"
     )
+    for caution in cautions(study, opened.modes):
+        print(f"{source}: note: {caution}")
+    print(f"{source}: note: {expectation(study)} Other assumptions: elbowroom power.")
 
 
 @cli.command("show")
@@ -59,7 +64,7 @@ def show(source: Source = "carmichael2017") -> None:
 
     Example: elbowroom study show carmichael2017
     """
-    from app.studies import open_study
+    from app.studies import cautions, open_study
 
     opened = open_study(source)
     study, console = opened.study, Console()
@@ -82,6 +87,13 @@ def show(source: Source = "carmichael2017") -> None:
     console.print(modes)
     if opened.modes:
         console.print(_behaviour(study, opened.modes))
+        console.print(
+            "Gain is what is left of a command along the direction that the elbow-lock takes away, \u03bb "
+            f"the damping it amounts to. Figures, laps, rules: elbowroom study atlas {source} --out atlas",
+            highlight=False,
+        )
+        for caution in cautions(study, opened.modes):
+            console.print(f"Note: {caution}", highlight=False)
     console.print(questions)
     for line in _protocol(study):
         console.print(line, highlight=False)
@@ -103,18 +115,25 @@ def atlas(
         int,
         typer.Option("--operators", min=0, max=1000, metavar="N", help="Simulated laps under each mode."),
     ] = 6,
+    every_method: Annotated[
+        bool, typer.Option("--every-method", help="Beside the study's modes every known method.")
+    ] = False,
     jobs: JobsOption = CORES,
 ) -> None:
     """How each mode behaves towards the singularity and away from it, on one page.
 
     Example: elbowroom study atlas carmichael2017 --out atlas
+
+    Example: elbowroom study atlas carmichael2017 --every-method --out atlas
     """
-    from app.atlas import PAGE, study_atlas, write_atlas
+    from app.atlas import PAGE, study_atlas, with_every_method, write_atlas
     from app.cli.progress import progress
     from app.studies import open_study
     from data.locations import check_folder
 
     study = open_study(source).study
+    if every_method:
+        study = with_every_method(study)
     check_folder(out, PAGE)
     with progress("Atlas") as report:
         made = study_atlas(study, source, operators, jobs, report)
@@ -130,36 +149,28 @@ _WHO_MOVES = {
 }
 
 
-_SHOWN_SIGMA = (0.2, 0.1, 0.02)
-
-
 def _behaviour(study: Study, resolved: "tuple[ResolvedMode, ...]") -> Table:
-    """Each mode into the elbow-lock and out of it: the gain that is left, and the fastest joint."""
-    import numpy as np
-
+    """Each mode into the elbow-lock and out of it."""
+    from app.atlas_tables import curves_table
     from sim_trials.mode_atlas import mode_curves
 
-    gains = [f"Gain in, out at \u03c3 = {sigma:g}" for sigma in _SHOWN_SIGMA]
-    table = Table("Mode", *gains, "Fastest joint", "A call", box=None, header_style="dim")
-    for mode in resolved:
-        curves = mode_curves(mode, study.maze)
-        shown = []
-        for sigma in _SHOWN_SIGMA:
-            at = int(np.argmin(np.abs(curves.sigma - sigma)))
-            shown.append(f"{curves.towards.gain[at]:.2f}, {curves.away.gain[at]:.2f}")
-        fastest = max(curves.towards.joint_speed.max(), curves.away.joint_speed.max())
-        table.add_row(
-            mode.name, *shown, f"{fastest:.0%} of its limit", f"{curves.cost_ns / 1000:.1f} \u00b5s"
-        )
+    cells = curves_table([mode_curves(mode, study.maze) for mode in resolved])
+    table = Table(box=None, header_style="dim")
+    for k, title in enumerate(cells.head):
+        table.add_column(title, justify="right" if k in cells.numbers else "left")
+    for row in cells.rows:
+        table.add_row(*row)
     return table
 
 
 def _protocol(study: Study) -> Iterator[str]:
     """What a participant goes through, a line a thing."""
     protocol = study.protocol
-    laps = (
-        "" if protocol.trial_source == "external" else f"{protocol.laps_per_condition} laps per condition, "
-    )
+    laps = {
+        "guided": "",
+        "observed": f"{protocol.laps_per_condition} laps per condition, ",
+        "external": "",
+    }[protocol.trial_source]
     yield (
         f"Protocol: {len(study.pairs)} pairs, each {protocol.repetitions} times, {laps}"
         f"at least {protocol.minimum_exposure_s:g} s of each, {protocol.trial_source} trials, "

@@ -1,14 +1,20 @@
 """The console's charts: one data colour, modes by row, an interval on every estimate."""
 
+import base64
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Literal
+from html import escape
+from typing import TYPE_CHECKING, Literal
 
 import altair as alt
 import pandas as pd
 import streamlit as st
 
 from app.console.findings import QuestionAtAGlance, StuckAtAGlance
+
+if TYPE_CHECKING:
+    from analysis.figures.style import Drawing
 
 LIKELY = 0.8
 """From this chance on a first rank is set in bold."""
@@ -22,18 +28,35 @@ class _Palette:
     ink_2: str
     ink_3: str
     line: str
+    line_strong: str
     data: str
     data_2: str
     surface: str
 
 
-_LIGHT = _Palette("#1D2930", "#4C5B65", "#66747D", "#DDE1DE", "#2F5566", "#7C95A1", "#FFFFFF")
-_DARK = _Palette("#E8EDEF", "#AEBBC3", "#8C9BA5", "#313D45", "#9FC3D3", "#66818E", "#1A2228")
+_LIGHT = _Palette("#1D2930", "#4C5B65", "#66747D", "#DDE1DE", "#B9C1C2", "#2F5566", "#7C95A1", "#FFFFFF")
+_DARK = _Palette("#E8EDEF", "#AEBBC3", "#8C9BA5", "#313D45", "#4C5A63", "#9FC3D3", "#66818E", "#1A2228")
 
 
 def palette() -> _Palette:
     """Colours of the theme that the browser shows."""
     return _DARK if st.context.theme.type == "dark" else _LIGHT
+
+
+def drawing(drawn: "Drawing") -> None:
+    """A figure as the report draws them, in the colours of the theme that the browser shows."""
+    from analysis.figures.style import DATA, INK, INK_2, INK_3, LINE, LINE_STRONG, SURFACE
+
+    svg, to = drawn.svg, palette()
+    if to is _DARK:
+        colours = (DATA, INK, INK_2, INK_3, LINE, LINE_STRONG, SURFACE)
+        dark = (to.data, to.ink, to.ink_2, to.ink_3, to.line, to.line_strong, to.surface)
+        painted = dict(zip(map(str.lower, colours), map(str.lower, dark), strict=True))
+        svg = re.sub("#[0-9a-f]{6}", lambda found: painted.get(found[0], found[0]), svg)
+    # As an image: Streamlit takes drawings out of what it is given as HTML.
+    content = base64.b64encode(svg.encode()).decode()
+    alt = escape(drawn.alt, quote=True)
+    st.html(f'<img class="drawing" alt="{alt}" src="data:image/svg+xml;base64,{content}">')
 
 
 def percent(share: float) -> str:

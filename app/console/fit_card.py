@@ -2,13 +2,13 @@
 
 import streamlit as st
 
+from app.console.aside_bar import running_bar
 from app.console.evidence import includes_simulated
 from app.console.full_fit import FittedReport, FullFit, full_fit, log_reading
 from app.console.style import Mark, card, heading
 from app.server.desk import Desk
 from data.errors import ElbowroomError
 
-_REFRESH_S = 1
 _AGREED = "report-names-the-modes"
 
 
@@ -20,26 +20,10 @@ def fit_card(desk: Desk) -> None:
             "The model with participants' differences, checked for convergence, as `elbowroom report` "
             "writes it: a page with figures and tables. It takes seconds to minutes, in a process of its own."
         )
-        # While it runs, only this part is read anew; when it is done, the whole page.
         if full_fit().state == "running":
-            _running()
+            running_bar(full_fit())
         else:
             _rest(desk, full_fit())
-
-
-@st.fragment(run_every=_REFRESH_S)
-def _running() -> None:
-    fit = full_fit()
-    if fit.state != "running":
-        st.rerun()
-    step = fit.step
-    words = f"{step.part}: {step.done} of {step.total}" if step.part else "Starting"
-    words += f", {step.now}" if step.now else ""
-    bar, button = st.columns([0.84, 0.16], vertical_alignment="center")
-    bar.progress(min(1.0, step.done / step.total), text=words)
-    if button.button("Cancel", width="stretch"):
-        fit.cancel()
-        st.rerun()
 
 
 def _rest(desk: Desk, fit: FullFit) -> None:

@@ -1,10 +1,6 @@
-"""The full fit on request: what ``elbowroom report`` writes, made in a process of its own, one at a time.
-
-What it has come to is kept in this process, not in a page, so that it goes on while pages change.
-"""
+"""The full fit on request: what ``elbowroom report`` writes, made in a process of its own, one at a time."""
 
 import io
-import multiprocessing
 import shutil
 import tempfile
 import threading
@@ -12,31 +8,13 @@ import weakref
 import zipfile
 from dataclasses import dataclass
 from datetime import datetime
-from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Literal, Self
+from typing import Self
 
+from app.console.aside import Aside, Teller
 from app.server.desk import Desk
-from app.server.worker_process import be_a_worker
-from data.errors import ElbowroomError
 from data.responses import LagTable, MetricTable, ResponseTable, StuckTable
 from data.study import Study
-
-_NICENESS = 10
-"""Fitting waits for the robots that people hold in hand."""
-_LEAST_WAIT_S = 5.0
-
-State = Literal["idle", "running", "done", "failed", "cancelled"]
-
-
-@dataclass(frozen=True)
-class Step:
-    """How far a part of a fit has come: ``done`` of ``total``, and a word on what is under way."""
-
-    part: str
-    done: int
-    total: int
-    now: str
 
 
 @dataclass(frozen=True)
@@ -58,19 +36,17 @@ class FittedReport:
         return content.getvalue()
 
 
-class FullFit:
+class FullFit(Aside):
     """At most one fit under way, and the report of the last one that was done."""
 
+    killed = "the process that fitted was ended from outside"
+
     def __init__(self) -> None:
-        self._lock = threading.Lock()
+        super().__init__()
         self._place = Path(tempfile.mkdtemp(prefix="elbowroom-report-"))
         # Also where nothing else is left that could clean up: at the end of the process.
         weakref.finalize(self, shutil.rmtree, self._place, ignore_errors=True)
-        self._process: multiprocessing.process.BaseProcess | None = None
         self._count = 0
-        self.state: State = "idle"
-        self.step = Step("", 0, 1, "")
-        self.trouble = ""
         self.report: FittedReport | None = None
 
     def start(self, desk: Desk, include_simulated: bool) -> None:
@@ -90,59 +66,12 @@ class FullFit:
             desk.store.log("researcher", "full fit", detail, desk.clock())
             self._count += 1
             folder = self._place / f"report-{self._count}"
-            # Spawned, never forked: the web process has threads.
-            context = multiprocessing.get_context("spawn")
-            ours, theirs = context.Pipe(duplex=False)
-            process = context.Process(target=_fit, args=(theirs, evidence, folder), daemon=True)
-            process.start()
-            theirs.close()
-            self._process, self.state, self.trouble = process, "running", ""
-            self.step = Step("", 0, 1, "")
-            listener = threading.Thread(
-                target=self._listen, args=(ours, process, folder, desk, include_simulated), daemon=True
-            )
-            listener.start()
 
-    def cancel(self) -> None:
-        """Give up the fit under way; an earlier report stays."""
-        with self._lock:
-            if self.state != "running" or self._process is None:
-                return
-            self.state = "cancelled"
-            self._process.terminate()
+            def take(warnings: object) -> None:
+                assert isinstance(warnings, tuple)
+                self.report = FittedReport(folder, desk.clock(), include_simulated, warnings)
 
-    def _listen(
-        self,
-        ours: Connection,
-        process: multiprocessing.process.BaseProcess,
-        folder: Path,
-        desk: Desk,
-        include_simulated: bool,
-    ) -> None:
-        """Take what the process says until it has said its last."""
-        warnings: tuple[str, ...] | None = None
-        trouble = "the process that fitted was ended from outside"
-        with ours:
-            while True:
-                try:
-                    said = ours.recv()
-                except (EOFError, OSError):
-                    break
-                if isinstance(said, Step):
-                    self.step = said
-                elif isinstance(said, tuple):
-                    warnings = said
-                else:
-                    trouble = str(said)
-        process.join(_LEAST_WAIT_S)
-        with self._lock:
-            if self.state == "cancelled":
-                return
-            if warnings is None:
-                self.state, self.trouble = "failed", trouble
-                return
-            self.report = FittedReport(folder, desk.clock(), include_simulated, warnings)
-            self.state = "done"
+            self.begin(_fit, (evidence, folder), take)
 
 
 _fits: list[FullFit] = []
@@ -187,39 +116,20 @@ class _Evidence:
         )
 
 
-def _fit(told: Connection, evidence: _Evidence, folder: Path) -> None:
-    """Fit and write, in a process of its own; sends `Step`s, then the warnings or what went wrong."""
-    be_a_worker(_NICENESS)
+def _fit(tell: Teller, evidence: _Evidence, folder: Path) -> None:
+    """Fit and write, in a process of its own; gives the warnings."""
     from analysis.fit import fit
     from analysis.report import write_report
 
-    try:
-        fitted = fit(evidence.table, progress=_Teller(told, "Fitting"))
-        write_report(
-            evidence.table,
-            fitted,
-            folder,
-            stuck=evidence.stuck,
-            study=evidence.study,
-            progress=_Teller(told, "Writing"),
-            lag=evidence.lag,
-            metrics=evidence.metrics,
-        )
-        told.send(tuple(fitted.warnings))
-    except ElbowroomError as error:
-        told.send(str(error))
-    except MemoryError:
-        told.send("not enough memory")
-    finally:
-        told.close()
-
-
-@dataclass(frozen=True)
-class _Teller:
-    """Progress of one part of the work, sent to the process that asked for it."""
-
-    told: Connection
-    part: str
-
-    def __call__(self, done: int, total: int, now: str = "") -> None:
-        self.told.send(Step(self.part, done, max(total, 1), now))
+    fitted = fit(evidence.table, progress=tell.part("Fitting"))
+    write_report(
+        evidence.table,
+        fitted,
+        folder,
+        stuck=evidence.stuck,
+        study=evidence.study,
+        progress=tell.part("Writing"),
+        lag=evidence.lag,
+        metrics=evidence.metrics,
+    )
+    tell.give(tuple(fitted.warnings))

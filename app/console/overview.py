@@ -11,9 +11,9 @@ from app.console.sessions_page import sessions_table
 from app.console.style import Mark, card, heading, headline, key_figures, table
 from app.console.trial_rows import trial_rows
 from app.console.unblinding import unblind_button
+from app.planning import expectation
 from app.server.desk import Desk
 from data.errors import InputError
-from data.study import Study
 
 _REFRESH_S = 10
 _COLUMNS = 3
@@ -27,6 +27,7 @@ def show(desk: Desk) -> None:
     unblind_button(desk)
     simulated_switch(desk)
     _figures(desk)
+    st.caption(f"{expectation(desk.study)} The page Planning simulates this with assumptions of your own.")
 
 
 def is_locked(desk: Desk) -> bool:
@@ -60,7 +61,6 @@ def _figures(desk: Desk) -> None:
     with card("participants"):
         heading("In a session now", f"updates every {_REFRESH_S} s")
         _sessions(desk, seated)
-    st.caption(planning_sentence(desk.study, desk.stored_study.name))
 
 
 def _ranking(found: Evidence) -> None:
@@ -116,14 +116,3 @@ def _quality(desk: Desk) -> None:
         st.caption("There is nothing to judge yet.")
         return
     table(("What", "So far"), [(line.what, line.mark) for line in lines])
-
-
-def planning_sentence(study: Study, name: str) -> str:
-    """Where to learn what the planned number of people is worth: simulating it takes minutes."""
-    planned = study.protocol.planned_participants
-    people = "1 participant is" if planned == 1 else f"{planned} participants are"
-    sizes = ",".join(str(size) for size in sorted({planned, 2 * planned, 4 * planned}))
-    return (
-        f"{people} planned. How often such a study finds the best mode is simulated in some minutes by "
-        f"`elbowroom power --study {name} --participants {sizes} --out power`"
-    )

@@ -5,7 +5,16 @@ from functools import partial
 
 import streamlit as st
 
-from app.console import data_page, links_page, overview, results, sessions_page, study_page, trials_page
+from app.console import (
+    data_page,
+    links_page,
+    overview,
+    planning_page,
+    results,
+    sessions_page,
+    study_page,
+    trials_page,
+)
 from app.console.style import LOGO, console_page
 from app.operator import page as operator_page
 from app.participant.pages import show_study
@@ -15,14 +24,24 @@ from app.server.passphrase import has_passphrase
 from app.server.visitors import is_researcher
 from data.errors import ElbowroomError
 
+
+def _modes(desk: Desk) -> None:
+    # With it comes the simulator, of which a server for a robot in the lab knows nothing until somebody asks.
+    from app.console import modes_page
+
+    modes_page.show(desk)
+
+
 _PAGES: dict[str, tuple[str, Callable[[Desk], None]]] = {
     "overview": ("Overview", overview.show),
     "sessions": ("Sessions", sessions_page.show),
     "trials": ("Trials", trials_page.show),
+    "modes": ("Modes", _modes),
     "results": ("Results", results.show),
     "data": ("Data", data_page.show),
     "study-file": ("Study file", study_page.show),
     "links": ("Links", links_page.show),
+    "planning": ("Planning", planning_page.show),
 }
 _LAB_PAGES: dict[str, tuple[str, Callable[[Desk], None]]] = {"operator": ("Operator", operator_page.show)}
 """Only for studies with a robot in the lab."""

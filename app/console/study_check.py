@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from app.studies import check_can_be_run, resolved_modes
+from app.studies import cautions, check_can_be_run, resolved_modes
 from data.errors import InputError
 from data.store import StoredStudy
 from data.study import Study
@@ -24,12 +24,15 @@ class StudyCheck:
         What it defines; None if it is wrong.
     changes : tuple of (place, served, candidate)
         Where it differs from the study that is served.
+    cautions : tuple of str
+        What a researcher must know of its modes though it is valid.
     """
 
     standing: Standing
     sentence: str
     study: Study | None
-    changes: tuple[tuple[str, str, str], ...]
+    changes: tuple[tuple[str, str, str], ...] = ()
+    cautions: tuple[str, ...] = ()
 
 
 def check_study(content: bytes, name: str, served: StoredStudy) -> StudyCheck:
@@ -40,23 +43,23 @@ def check_study(content: bytes, name: str, served: StoredStudy) -> StudyCheck:
         return _wrong(f"{name}: not UTF-8 text (byte {error.start})")
     try:
         study = parse_study(text, where=name)
-        if study.protocol.trial_source != "external":
-            resolved_modes(study, name)
+        modes = () if study.protocol.trial_source == "external" else resolved_modes(study, name)
         check_can_be_run(study, name)
+        told = cautions(study, modes)
     except InputError as error:
         return _wrong(str(error))
     if study.sha256 == served.sha256:
-        return StudyCheck("same", f"Valid, and the same study as {served.label}.", study, ())
+        return StudyCheck("same", f"Valid, and the same study as {served.label}.", study, (), told)
     if study.name != served.name:
         words = f"Valid, and a study of its own: {study.name!r}, not {served.name!r}."
-        return StudyCheck("another study", words, study, ())
+        return StudyCheck("another study", words, study, (), told)
     changes = _changes(served.study, study)
     words = f"Valid, and differs from {served.label}: served, it is stored as the next revision."
-    return StudyCheck("next revision", words, study, changes)
+    return StudyCheck("next revision", words, study, changes, told)
 
 
 def _wrong(sentence: str) -> StudyCheck:
-    return StudyCheck("wrong", sentence, None, ())
+    return StudyCheck("wrong", sentence, None)
 
 
 def _changes(served: Study, candidate: Study) -> tuple[tuple[str, str, str], ...]:

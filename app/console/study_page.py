@@ -44,6 +44,7 @@ def study_facts(study: Study) -> list[tuple[str, str]]:
         "observed": "watched",
         "external": "on a robot in the lab",
     }
+    laps = [("Laps per method and comparison", str(protocol.laps_per_condition))]
     return [
         ("Title", study.title),
         ("Trials", sources[protocol.trial_source]),
@@ -51,7 +52,7 @@ def study_facts(study: Study) -> list[tuple[str, str]]:
         ("Questions", ", ".join(question.name for question in study.questions)),
         ("Pairs", str(len(study.pairs))),
         ("Showings of each pair", str(protocol.repetitions)),
-        ("Laps per method and comparison", str(protocol.laps_per_condition)),
+        *(laps if protocol.trial_source == "observed" else []),
         ("Least time with each method", f"{protocol.minimum_exposure_s:g} s"),
         ("Attention checks", str(protocol.attention_checks)),
         ("Planned participants", str(protocol.planned_participants)),
@@ -96,6 +97,8 @@ def _check(desk: Desk) -> None:
     found = check_study(given.getvalue(), given.name, desk.stored_study)
     said = Mark("bad" if found.standing == "wrong" else "good", found.sentence)
     st.html(f"<p>{said.html}</p>")
+    for caution in found.cautions:
+        st.html(f"<p>{Mark('warn', f'{caution[0].upper()}{caution[1:]}.').html}</p>")
     if found.changes:
         _changes(found)
     elif found.standing == "another study" and found.study is not None:

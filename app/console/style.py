@@ -51,7 +51,8 @@ def heading(text: str, note: str = "") -> None:
 
 
 def _html(cell: Cell) -> str:
-    return cell.html if isinstance(cell, Mark) else escape(cell)
+    # Names of methods are long, and a line may be broken after an underscore.
+    return cell.html if isinstance(cell, Mark) else escape(cell).replace("_", "_<wbr>")
 
 
 def card(name: str, place: DeltaGenerator | None = None) -> DeltaGenerator:

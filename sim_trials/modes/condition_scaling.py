@@ -1,4 +1,8 @@
-"""The plain inverse, slowed down and stopped by the Jacobian's condition number, as MoveIt Servo does."""
+"""The plain inverse, slowed down and stopped by the Jacobian's condition number, as MoveIt Servo does.
+
+Once stopped it stays so, as its original does: from ``stop_at`` on it answers no command, not even one that
+leads away. A lap that passes that condition number cannot be finished under it (`sim_trials.standstill`).
+"""
 
 import numpy as np
 
@@ -53,7 +57,7 @@ def qdot_command(
 
 METHOD = Method(
     name="condition_scaling",
-    summary="Slowing down by condition number, and stopping, as MoveIt Servo does",
+    summary="Slowing down by condition number, and stopping for good, as MoveIt Servo does",
     equation=(
         "qdot = c J^-1 xdot; with k = sigma_1 / sigma_6, c = 1 up to slow_from, 0 from stop_at, between them"
         " 1 - (k - slow_from) / (stop_at - slow_from), the width times leaving_factor when leaving"
@@ -64,11 +68,12 @@ METHOD = Method(
     ),
     source=(
         "MoveIt 2, moveit_servo, velocity scaling for singularity and its default parameters: 17, 30, 2, step"
-        " 0.01. From stop_at on it stops in every direction. The limit on the speeds is this project's"
+        " 0.01. From stop_at on it stands still whatever it is asked, so that no hand gets it out again: laps"
+        " that lead there cannot be finished. The limit on the speeds is this project's"
     ),
     parameters=(
-        Parameter("slow_from", 17.0, 1.0, 1000.0, "", "condition number from which it slows down (SI units)"),
-        Parameter("stop_at", 30.0, 1.0, 10000.0, "", "condition number from which it stands still"),
+        Parameter("slow_from", 17.0, 1.0, 1000.0, "", "condition number from which it slows down (m, rad)"),
+        Parameter("stop_at", 30.0, 1.0, 10000.0, "", "condition number from which it stands still for good"),
         Parameter("leaving_factor", 2.0, 1.0, 100.0, "", "how much wider the slowing is when leaving"),
         Parameter("probe", 0.01, 1e-6, 0.1, "", "step along u_6 that tells its sign [m and rad, as a norm]"),
         Parameter("speed_share", 0.5, 0.01, 0.95, "", "the fastest joint's share of its speed limit"),

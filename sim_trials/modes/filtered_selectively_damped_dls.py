@@ -45,7 +45,10 @@ METHOD = Method(
         r"\dot q = \mathrm{clamp}\Big(\sum_i \mathrm{clamp}(h(\sigma_i)^{-1} v_i u_i^T \dot x, \gamma_i),"
         r" \gamma_{\max}\Big)"
     ),
-    source="Mulumbwa, section 3.2.2: eqs. (29) and (30), then eqs. (33) to (36), all with their corrections",
+    source=(
+        "Mulumbwa, section 3.2.2: eqs. (29) and (30), then eqs. (33) to (36), all with their corrections."
+        " Crossing a singularity the motion jumps in sign"
+    ),
     parameters=(
         Parameter("sigma0", 0.05, 0.001, 1.0, "", "what stands for a singular value of zero; 0.005 there"),
         Parameter("nu", 10.0, 0.1, 100.0, "", "shape: the larger, the narrower the region that is filtered"),

@@ -114,6 +114,16 @@ class Method:
         """Names of the parameters in the order in which the compiled function reads them."""
         return tuple(parameter.name for parameter in self.parameters)
 
+    def __reduce__(self) -> tuple[Callable[[str], "Method"], tuple[str]]:
+        """To another process a method goes by its name: its machine code stays where it is."""
+        return _registered, (self.name,)
+
+
+def _registered(name: str) -> Method:
+    from sim_trials.modes.registry import METHODS
+
+    return METHODS[name]
+
 
 @dataclass(frozen=True)
 class ResolvedMode:

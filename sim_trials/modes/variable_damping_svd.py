@@ -41,7 +41,7 @@ METHOD = Method(
         r" \lambda_i^2 = \lambda^2 [1 - (3 s_i^2 - 2 s_i^3)], \quad s_i = \min(1, \sigma_i / \sigma_t)"
     ),
     source=(
-        "Beaudoin, Laliberte, Gosselin (2022), eqs. (19) and (29), whose first minus sign is a misprint:"
+        "Beaudoin, Laliberte, Gosselin (2022), eqs. (19) and (29), whose last minus sign is a misprint:"
         " lambda is said to be the damping at sigma_i = 0. There lambda^2 = 0.1 and sigma_t = 1"
     ),
     parameters=(

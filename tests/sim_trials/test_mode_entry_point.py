@@ -1,8 +1,10 @@
-"""A method in a package of its own: found by its entry point, as good as those that ship."""
+"""A method in a package of its own, as the README shows it: found by its entry point, as good as any."""
 
 import os
+import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,29 +13,17 @@ from data.errors import ElbowroomError
 from data.study_file import study_text
 from sim_trials.modes import registry
 
-MODULE = '''
-"""Damped least squares at half speed."""
-
-import numpy as np
-
-from sim_trials.modes.damped_inverse import damped_inverse
-from sim_trials.modes.method import Method, Parameter, Property, mode_function
+README = Path(registry.__file__).parents[1] / "README.md"
 
 
-@mode_function
-def qdot_command(q, J, sigma, xdot, dt, parameters, memory, qdot_out):
-    damped_inverse(J, 0.4, xdot, qdot_out)
-    for i in range(6):
-        qdot_out[i] *= parameters[0]
+def block(language: str) -> str:
+    """The one block of a language that the README shows for a package with a method."""
+    said = README.read_text(encoding="utf-8").partition("#### In a package of your own")[2]
+    return re.findall(rf"^```{language}\n(.*?)^```$", said, re.MULTILINE | re.DOTALL)[0]
 
 
-METHOD = Method(
-    name="gentle", summary="Damped and slow", equation="qdot = speed J' (J J' + 0.16 I)^-1 xdot",
-    source="a test",
-    parameters=(Parameter("speed", 0.5, 0.0, 1.0, "", "scale"),),
-    properties=frozenset({Property.NEVER_REVERSES, Property.NEVER_AMPLIFIES}), function=qdot_command,
-)
-'''
+MODULE = block("python")
+POINTS = tomllib.loads(block("toml"))["project"]["entry-points"][registry.ENTRY_POINT_GROUP]
 
 SESSION = """
 import sys
@@ -45,9 +35,10 @@ from sim_trials.scripted_hand import ScriptedHand
 from sim_trials.trial import finish, replay, run_trial
 from sim_trials.modes.registry import method_names
 
-good, bad = sys.argv[1:]
+good, bad, atlas = sys.argv[1:]
 assert run(["study", "check", good]) == 0
 assert run(["study", "check", bad]) == 2
+assert run(["study", "atlas", good, "--operators", "0", "--out", atlas]) == 0
 study = read_study(good)
 lap = run_trial(study, "G", draw_operator(1), seed=1)
 print("lap", lap.outcome, replay(lap.recording, study).metrics == lap.metrics)
@@ -62,26 +53,26 @@ print("live", finish(study, "G", trial.inputs, lap=1).outcome)
 def site(tmp_path: Path) -> Path:
     """A folder of installed packages with one in it: what an installer leaves behind."""
     folder = tmp_path / "site"
-    package, info = folder / "gentle_modes", folder / "gentle_modes-1.0.dist-info"
+    package, info = folder / "wall_modes", folder / "wall_modes-1.0.dist-info"
     package.mkdir(parents=True)
     info.mkdir()
     (package / "__init__.py").write_text("")
-    (package / "gentle.py").write_text(MODULE)
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: gentle-modes\nVersion: 1.0\n")
-    announce(folder, "gentle = gentle_modes.gentle:METHOD")
+    (package / "slowing_dls.py").write_text(MODULE)
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: wall-modes\nVersion: 1.0\n")
+    announce(folder, *(f"{name} = {value}" for name, value in POINTS.items()))
     return folder
 
 
-def announce(site: Path, line: str) -> None:
-    text = f"[{registry.ENTRY_POINT_GROUP}]\n{line}\n"
-    (site / "gentle_modes-1.0.dist-info" / "entry_points.txt").write_text(text)
+def announce(site: Path, *lines: str) -> None:
+    text = "\n".join((f"[{registry.ENTRY_POINT_GROUP}]", *lines, ""))
+    (site / "wall_modes-1.0.dist-info" / "entry_points.txt").write_text(text)
 
 
 @pytest.fixture
 def forgotten() -> None:
     """No module of the package is left to the next test."""
     yield
-    for name in [name for name in sys.modules if name.startswith("gentle_modes")]:
+    for name in [name for name in sys.modules if name.startswith("wall_modes")]:
         del sys.modules[name]
 
 
@@ -89,12 +80,12 @@ def test_a_packaged_method_is_checked_listed_and_runs_a_lap_and_a_live_trial(
     site: Path, tmp_path: Path
 ) -> None:
     text = study_text("carmichael2017").replace("right_y_m = -1.045", "right_y_m = -0.6")
-    mode = '[[modes]]\nname = "G"\nmethod = "gentle"\nparameters = { speed = 0.8 }\n\n[[questions]]'
+    mode = '[[modes]]\nname = "G"\nmethod = "slowing_dls"\nparameters = { lambda = 0.2 }\n\n[[questions]]'
     good, bad = tmp_path / "good.toml", tmp_path / "bad.toml"
     good.write_text(text.replace("[[questions]]", mode, 1))
-    bad.write_text(good.read_text().replace('method = "gentle"', 'method = "gentel"'))
+    bad.write_text(good.read_text().replace('"slowing_dls"', '"slowing_dsl"'))
     ended = subprocess.run(
-        [sys.executable, "-W", "error", "-c", SESSION, str(good), str(bad)],
+        [sys.executable, "-W", "error", "-c", SESSION, str(good), str(bad), str(tmp_path / "atlas")],
         env={
             **os.environ,
             "PYTHONPATH": os.pathsep.join((str(site), str(Path(registry.__file__).parents[2]))),
@@ -106,8 +97,9 @@ def test_a_packaged_method_is_checked_listed_and_runs_a_lap_and_a_live_trial(
     assert ended.returncode == 0, ended.stderr
     assert "lap completed True" in ended.stdout
     assert "live completed" in ended.stdout
-    assert "'gentel'" in ended.stderr
-    assert "gentle, " in ended.stderr, "the packaged method is not among the valid names"
+    assert "<h3>slowing_dls <small>G</small></h3>" in (tmp_path / "atlas" / "atlas.html").read_text()
+    assert "'slowing_dsl'" in ended.stderr
+    assert "slowing_dls, " in ended.stderr, "the packaged method is not among the valid names"
 
 
 @pytest.mark.usefixtures("forgotten")
@@ -116,17 +108,17 @@ def test_it_stands_among_the_others_in_alphabetical_order(
 ) -> None:
     monkeypatch.syspath_prepend(site)
     found = registry.discover()
-    assert list(found) == sorted([*registry.METHODS, "gentle"])
+    assert list(found) == sorted([*registry.METHODS, *POINTS])
 
 
 @pytest.mark.usefixtures("forgotten")
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("gentle = gentle_modes.nowhere:METHOD", "cannot be imported: ModuleNotFoundError"),
-        ("gentle = gentle_modes.gentle:qdot_command", "not a sim_trials.modes.method.Method"),
-        ("soft = gentle_modes.gentle:METHOD", "METHOD.name is 'gentle'"),
-        ("dls = gentle_modes.gentle:METHOD", "there is a method of this name already"),
+        ("slowing_dls = wall_modes.nowhere:METHOD", "cannot be imported: ModuleNotFoundError"),
+        ("slowing_dls = wall_modes.slowing_dls:qdot_command", "not a sim_trials.modes.method.Method"),
+        ("soft = wall_modes.slowing_dls:METHOD", "METHOD.name is 'slowing_dls'"),
+        ("dls = wall_modes.slowing_dls:METHOD", "there is a method of this name already"),
     ],
 )
 def test_a_package_that_announces_nonsense_is_named(
@@ -136,14 +128,14 @@ def test_a_package_that_announces_nonsense_is_named(
     monkeypatch.syspath_prepend(site)
     with pytest.raises(ElbowroomError) as error:
         registry.discover()
-    assert "gentle-modes" in str(error.value)
+    assert "wall-modes" in str(error.value)
     assert said in str(error.value)
     assert "\n" not in str(error.value)
 
 
 @pytest.mark.usefixtures("forgotten")
 def test_a_function_that_is_not_compiled_is_refused(site: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (site / "gentle_modes" / "gentle.py").write_text(MODULE.replace("@mode_function\n", ""))
+    (site / "wall_modes" / "slowing_dls.py").write_text(MODULE.replace("@mode_function\n", ""))
     monkeypatch.syspath_prepend(site)
     with pytest.raises(ElbowroomError, match="not decorated with @mode_function"):
         registry.discover()
