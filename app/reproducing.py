@@ -1,4 +1,4 @@
-"""A source document's experiment as a folder: tables, figures, verdicts."""
+"""A source document's experiment as a folder: tables, figures, verdicts, and a page of them all."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.reproduction_figures import drawings
+from app.reproduction_page import reproduction_page
 from data.errors import InputError
 from data.locations import check_folder, writing_folder
-from sim_trials.reproductions.verdict import Judgement, Reproduction, Verdict, verdict_table
+from sim_trials.reproductions.verdict import Judgement, Progress, Reproduction, Verdict, verdict_table
 
-MARKER = "verdicts.csv"
+VERDICTS = "verdicts.csv"
 
 
 @dataclass(frozen=True)
@@ -21,8 +22,18 @@ class Written:
     summary: str
 
 
-def reproduce(document: str, out: Path) -> Written:
-    """Run one document's experiment and write ``verdicts.csv``, its tables and its figures into a folder.
+def reproduce(document: str, out: Path, n_jobs: int = 1, progress: Progress | None = None) -> Written:
+    """Run one document's experiment and write verdicts, tables, figures and a page of them into a folder.
+
+    Parameters
+    ----------
+    document : str
+    out : Path
+        New, empty, or an earlier result of the same document.
+    n_jobs : int
+        Processes; the result does not depend on it.
+    progress : callable, optional
+        Called as ``progress(done, total, what)``.
 
     Raises
     ------
@@ -30,35 +41,65 @@ def reproduce(document: str, out: Path) -> Written:
         If there is no such document, or the folder holds something else.
     """
     work = _experiment(document)
-    check_folder(out, MARKER)
-    done = work()
-    with writing_folder(out, marker=MARKER, owns=()) as folder:
+    page = page_name(document)
+    check_folder(out, page)
+    done = work(n_jobs, progress)
+    drawn = drawings(done)
+    with writing_folder(out, marker=page, owns=()) as folder:
         for name, table in done.tables.items():
             table.to_csv(folder / f"{name}.csv", index=False)
-        for drawing in drawings(done):
+        for drawing in drawn:
             drawing.write(folder)
-        verdict_table(done.verdicts).to_csv(folder / MARKER, index=False)
+        verdict_table(done.verdicts).to_csv(folder / VERDICTS, index=False)
+        (folder / page).write_text(reproduction_page(done, drawn), encoding="utf-8", newline="\n")
         names = sorted(path.name for path in folder.iterdir())
     return Written(tuple(out / name for name in names), _summary(done))
 
 
-def _experiment(document: str) -> Callable[[], Reproduction]:
-    from sim_trials.reproductions.beaudoin2022 import experiment as beaudoin2022
-    from sim_trials.reproductions.mulumbwa import experiment as mulumbwa
+def page_name(document: str) -> str:
+    """The page that stands for a whole result, and tells whose it is."""
+    return f"{document}.html"
 
-    known = {
-        "mulumbwa": mulumbwa.reproduce,
-        "beaudoin2022": beaudoin2022.reproduce,
-    }
-    if document not in known:
-        raise InputError(f"{document!r} is no source document; valid: {', '.join(sorted(known))}")
-    return known[document]
+
+Experiment = Callable[[int, Progress | None], Reproduction]
+
+
+def _beaudoin2022(n_jobs: int, progress: Progress | None) -> Reproduction:
+    from sim_trials.reproductions.beaudoin2022.experiment import reproduce
+
+    return reproduce(progress)
+
+
+def _carmichael2017(n_jobs: int, progress: Progress | None) -> Reproduction:
+    from app.carmichael2017.experiment import reproduce
+
+    return reproduce(n_jobs, progress)
+
+
+def _mulumbwa(n_jobs: int, progress: Progress | None) -> Reproduction:
+    from sim_trials.reproductions.mulumbwa.experiment import reproduce
+
+    return reproduce(progress)
+
+
+EXPERIMENTS: dict[str, Experiment] = {
+    "beaudoin2022": _beaudoin2022,
+    "carmichael2017": _carmichael2017,
+    "mulumbwa": _mulumbwa,
+}
+
+
+def _experiment(document: str) -> Experiment:
+    if document not in EXPERIMENTS:
+        raise InputError(f"{document!r} is no source document; valid: {', '.join(sorted(EXPERIMENTS))}")
+    return EXPERIMENTS[document]
 
 
 def _summary(done: Reproduction) -> str:
     counted = Counter(verdict.judgement for verdict in done.verdicts)
     said = ", ".join(f"{counted[j]} {j.value}" for j in Judgement if counted[j])
-    return "\n".join([done.source, f"{len(done.verdicts)} claims: {said}", *_lines(done.verdicts)])
+    about = [done.source, done.simulated] if done.simulated else [done.source]
+    return "\n".join([*about, f"{len(done.verdicts)} claims: {said}", *_lines(done.verdicts)])
 
 
 def _lines(verdicts: Sequence[Verdict]) -> list[str]:

@@ -1,10 +1,13 @@
 """What came of a published claim when its experiment was run again."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 import pandas as pd
+
+Progress = Callable[[int, int, str], None]
+"""Told how much of an experiment is done, of how much, and a word on what is under way."""
 
 
 class Judgement(StrEnum):
@@ -39,12 +42,19 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """A document's experiment, run again: its tables by name and a verdict per claim."""
+    """A document's experiment, run again: its tables by name and a verdict per claim.
+
+    Attributes
+    ----------
+    simulated : str
+        Who was simulated, for every figure and page; empty if the document's experiment has no people.
+    """
 
     name: str
     source: str
     tables: dict[str, pd.DataFrame]
     verdicts: tuple[Verdict, ...]
+    simulated: str = ""
 
 
 def judge(holds: bool | Sequence[bool], assumption: str = "") -> Judgement:
@@ -62,6 +72,11 @@ def judge(holds: bool | Sequence[bool], assumption: str = "") -> Judgement:
     if not any(found):
         return Judgement.CONTRADICTED
     return Judgement.REPRODUCED if all(found) and not assumption else Judgement.UNDER_ASSUMPTION
+
+
+def percent(share: float) -> str:
+    """A share as it is written in verdicts and figures: ``39 %``."""
+    return f"{100.0 * share:.0f} %"
 
 
 def verdict_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:

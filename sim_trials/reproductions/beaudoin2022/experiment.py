@@ -10,7 +10,7 @@ from sim_trials.reproductions.beaudoin2022.claims import verdicts_of
 from sim_trials.reproductions.beaudoin2022.robot import B
 from sim_trials.reproductions.beaudoin2022.strategies import STRATEGIES, inverse_of, transpose_angle
 from sim_trials.reproductions.beaudoin2022.trajectory import HARMONICS, Course, Reading, run
-from sim_trials.reproductions.verdict import Reproduction
+from sim_trials.reproductions.verdict import Progress, Reproduction
 
 MIDDLE_M, END_M = B[2] / 2, B[2]
 READINGS = (
@@ -36,12 +36,15 @@ class Run:
     course: Course
 
 
-def reproduce() -> Reproduction:
-    """Run everything and judge the paper's claims."""
-    runs = [
-        Run(i, harmonic.number, strategy, run(harmonic, inverse_of(strategy, r.damping_squared), r))
-        for (i, r), harmonic, strategy in product(enumerate(READINGS), HARMONICS, STRATEGIES)
-    ]
+def reproduce(progress: Progress | None = None) -> Reproduction:
+    """Run everything and judge the paper's claims; ``progress(done, total, what)`` after each course."""
+    combinations = list(product(enumerate(READINGS), HARMONICS, STRATEGIES))
+    runs = []
+    for (i, r), harmonic, strategy in combinations:
+        course = run(harmonic, inverse_of(strategy, r.damping_squared), r)
+        runs.append(Run(i, harmonic.number, strategy, course))
+        if progress is not None:
+            progress(len(runs), len(combinations), f"trajectory {harmonic.number}, {strategy}")
     angles = angle_table(runs)
     return Reproduction(
         "beaudoin2022",

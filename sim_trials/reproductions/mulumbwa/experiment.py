@@ -10,7 +10,7 @@ from sim_trials.reproductions.mulumbwa import euler, humanoid, joint_limits, pla
 from sim_trials.reproductions.mulumbwa.arms import HUMANOID_TARGETS, PLANAR_TARGETS
 from sim_trials.reproductions.mulumbwa.arms import humanoid as humanoid_arm
 from sim_trials.reproductions.mulumbwa.claims import verdicts_of
-from sim_trials.reproductions.verdict import Reproduction
+from sim_trials.reproductions.verdict import Progress, Reproduction
 
 STARTS = ((0.0, 0.0, 0.0), (0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (np.pi / 4, -0.5, 0.3))
 """Start angles of the planar arm [rad]: the thesis gives none."""
@@ -32,13 +32,13 @@ WAYS = (
 """Starts and goals [m] around one obstacle, goals close to it; the thesis gives no positions."""
 
 
-def reproduce() -> Reproduction:
-    """Run everything and judge the thesis's claims."""
+def reproduce(progress: Progress | None = None) -> Reproduction:
+    """Run everything and judge the thesis's claims; ``progress`` counts the runs of the 7-DOF arm."""
     tables = {
         "iterations": iteration_table(),
         "planar": planar_table(),
         "angle_sets": angle_set_table(),
-        "humanoid": humanoid_table(),
+        "humanoid": humanoid_table(progress),
         "humanoid_angles": humanoid_angle_table(),
         "obstacle": obstacle_table(),
         "obstacle_paths": obstacle_path_table(),
@@ -99,22 +99,32 @@ def angle_set_table() -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["singular_set", "published_free", "found_free"])
 
 
-def humanoid_table() -> pd.DataFrame:
+def humanoid_table(progress: Progress | None = None) -> pd.DataFrame:
     """SVF+SDLS on the 7-DOF arm: every reading of the arm and the angle set, with and without switching."""
-    rows = []
-    for convention, (where, target), gamma_max, order, switches in product(
-        Convention, HUMANOID_TARGETS.items(), GAMMAS, euler.SETS, (False, True)
-    ):
+    rows: list[tuple[object, ...]] = []
+    plain = list(product(Convention, HUMANOID_TARGETS.items(), GAMMAS, euler.SETS, (False, True)))
+    limited = [
+        (target, task)
+        for target, task in product(HUMANOID_TARGETS.items(), SECONDARY.items())
+        if task[1] is not None
+    ]
+
+    def tell(what: str) -> None:
+        if progress is not None:
+            progress(len(rows), len(plain) + len(limited), what)
+
+    for convention, (where, target), gamma_max, order, switches in plain:
         run = humanoid.solve(
             humanoid_arm(convention), target, order=order, switches_sets=switches, gamma_max=gamma_max
         )
         rows.append((convention.value, where, gamma_max, _code(order), switches, "none", *_ends(run)))
-    for (where, target), (name, secondary) in product(HUMANOID_TARGETS.items(), SECONDARY.items()):
-        if secondary is not None:
-            run = humanoid.solve(
-                humanoid_arm(Convention.MODIFIED), target, switches_sets=True, secondary=secondary
-            )
-            rows.append(("modified", where, GAMMAS[0], _code(humanoid.MAIN_SET), True, name, *_ends(run)))
+        tell(f"7-DOF arm, set {_code(order)}")
+    for (where, target), (name, secondary) in limited:
+        run = humanoid.solve(
+            humanoid_arm(Convention.MODIFIED), target, switches_sets=True, secondary=secondary
+        )
+        rows.append(("modified", where, GAMMAS[0], _code(humanoid.MAIN_SET), True, name, *_ends(run)))
+        tell(f"7-DOF arm, {name}")
     columns = [
         "convention",
         "target",
@@ -154,8 +164,9 @@ def obstacle_table() -> pd.DataFrame:
     rows = []
     for (number, (start, goal)), as_printed in product(enumerate(WAYS, start=1), (False, True)):
         path = potential_field.descend(np.array(start), np.array(goal), OBSTACLE, as_printed=as_printed)
-        rows.append((number, as_printed, path.clearance_m, path.has_arrived))
-    return pd.DataFrame(rows, columns=["way", "as_printed", "clearance_m", "has_arrived"])
+        rows.append((number, as_printed, *goal, path.clearance_m, path.has_arrived))
+    columns = ["way", "as_printed", "goal_x_m", "goal_y_m", "clearance_m", "has_arrived"]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def obstacle_path_table() -> pd.DataFrame:
