@@ -116,7 +116,7 @@ def _expected(draws: Draws, levels: int, i: int, j: int, n_ij: int, n_ji: int) -
 
 def knows_scale(parameters: Mapping[str, NDArray[np.float64]], levels: int) -> bool:
     """False where the model was fitted to a shorter scale than the answers have (the gibbs engine)."""
-    if "log_nu" in parameters or "log_theta" in parameters:
+    if "log_nu" in parameters:
         return levels == 3
     return sum(name.startswith("cut_") for name in parameters) == levels // 2 - (levels == 2)
 
@@ -139,6 +139,6 @@ def answer_probabilities(
     """
     if "log_nu" in parameters:
         return np.exp(adjacent_log_probabilities(eta, parameters["log_nu"]))
-    cuts = [parameters[name] for name in ("cut_1", "cut_2", "log_theta") if name in parameters]
+    cuts = [parameters[name] for name in ("cut_1", "cut_2") if name in parameters]
     stacked = np.stack(cuts, axis=-1) if cuts else np.empty((*([1] * eta.ndim), 0))
     return np.exp(cumulative_log_probabilities(eta, stacked, levels))

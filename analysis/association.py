@@ -159,6 +159,12 @@ def _own_means(metrics: MetricTable, name: str) -> pd.DataFrame:
     return metrics.rows.groupby(["participant", "mode"], sort=False)[name].mean().unstack("mode")
 
 
+def mode_means(metrics: MetricTable, name: str, modes: Sequence[str]) -> FloatArray:
+    """Each mode's mean over participants of their own means, NaN where none has it: ndarray, shape
+    (mode,)."""
+    return np.asarray(_own_means(metrics, name).mean().reindex(list(modes)), dtype=float)
+
+
 def _mean_draws(metrics: MetricTable, name: str, modes: Sequence[str], seed: int) -> FloatArray:
     """Bayesian bootstrap of each mode's mean over participants, the same weights for all: (draw, mode)."""
     own = _own_means(metrics, name).reindex(columns=list(modes)).to_numpy(float)

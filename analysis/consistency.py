@@ -43,7 +43,8 @@ class Consistency:
         Answers to a pair that the person had answered before, set beside the answer before; those that again
         prefer the same mode (or again none), and those that prefer the other one.
     same_by_chance : float
-        Share of the same that would be expected, did a person's answers to a pair not hang together: for all.
+        Share of the same that would be expected by chance, given how often each answer was given to the pair
+        before and after: for all.
     retest : float
         Correlation of such answers with those before, on the scale from much j (-2) to much i (2), about 0.
     u : float

@@ -1,30 +1,41 @@
-"""Worth on a metric: does what was measured of a mode go with its ability? A model of record, by PyMC.
+"""Worth on a metric: does what was measured of a mode go with its ability? A regression in two stages.
 
-``ability = beta x + ZeroSumNormal(sigma)`` with x the modes' mean metric, standardised over the modes;
-beta ~ Normal(0, 1), sigma ~ HalfNormal(0.5); side effect, cut-points and people as in the report's model.
-With few modes a line through their worths fits whatever it is, so it needs at least four.
+``ability = slope x + residual_sd ZeroSumNormal(1)`` with x the modes' mean metric, centred, in standard
+deviations over the modes; slope ~ Normal(0, 1), residual_sd ~ HalfNormal(1). First, what the answers alone
+say of the abilities: the report's posterior, taken as normal, with its prior divided out. Then the line
+through that: given residual_sd everything is normal, and residual_sd is summed over a grid. No sampling, so
+milliseconds.
+
+The modes are the only observations of x. With few of them a line through their worths fits whatever they are,
+so it takes at least four, and the slope stays weakly identified well beyond that.
+
+References
+----------
+Gasparrini, Armstrong, Kenward 2012, "Multivariate meta-analysis for non-linear and other multi-parameter
+associations" (regression on estimates that carry a covariance); Gelman 2006, "Prior distributions for
+variance parameters in hierarchical models" (HalfNormal and few groups).
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.association import FEWEST_MODES, measures_in
-from analysis.counts import Counts, count_responses
-from analysis.diagnostics import RHAT_BELOW, convergence, hdi
-from analysis.model import CUT_GAP_SCALE, SIDE_EFFECT_SD, SUBJECT_SD_SCALE
-from analysis.results import HDI_PROBABILITY, Fit, QuestionFit
+from analysis.association import FEWEST_MODES, measures_in, mode_means
+from analysis.results import HDI_PROBABILITY, Draws, Fit
 from analysis.zero_sum import zero_sum_basis
-from data.responses import MetricTable, ResponseTable
+from data.responses import MetricTable
 
-Progress = Callable[[int, int, str], None]
 FloatArray = NDArray[np.float64]
 SLOPE_SD = 1.0
-"""Scale of Normal(0, .) on beta [logit per sd over modes]. Untuned: as wide as abilities."""
-RESIDUAL_SD_SCALE = 0.5
-"""Scale of HalfNormal(.) on what the metric leaves of the abilities [logit]. Untuned."""
+"""Scale of Normal(0, .) on the slope [logit per sd over modes]. Untuned: as wide as abilities."""
+RESIDUAL_SD_SCALE = 1.0
+"""Scale of HalfNormal(.) on what the metric leaves of the abilities [logit]. Untuned: the metric may leave
+all."""
+_RESIDUALS = np.linspace(0.0, 5 * RESIDUAL_SD_SCALE, 251)[1:]
+_SLOPES = np.linspace(-6 * SLOPE_SD, 6 * SLOPE_SD, 2401)
+_LEAST_PRECISION = 1e-6
+"""Of what the answers say along a direction [1/logit²]: noise of the draws must not make it negative."""
 
 
 @dataclass(frozen=True)
@@ -33,105 +44,117 @@ class CovariateEffect:
 
     Attributes
     ----------
-    slope_mean, slope_hdi_low, slope_hdi_high : float
-        Ability for one standard deviation more of the metric over the modes [logit]; 94 % HDI.
+    metric_sd : float
+        One standard deviation of the metric over the modes [unit of the metric].
+    slope_mean, slope_sd, slope_hdi_low, slope_hdi_high : float
+        Ability for one such standard deviation more [logit]; 94 % HDI.
     p_positive : float
         Posterior probability of a slope above 0.
     residual_sd : float
         Posterior mean of what the metric leaves of the abilities [logit].
-    converged : bool
     """
 
     question: str
     metric: str
+    metric_sd: float
     slope_mean: float
+    slope_sd: float
     slope_hdi_low: float
     slope_hdi_high: float
     p_positive: float
     residual_sd: float
-    converged: bool
 
 
-def covariate_effects(
-    table: ResponseTable, fit: Fit, metrics: MetricTable, progress: Progress | None = None
-) -> tuple[CovariateEffect, ...]:
-    """Every ranked question with every metric that all modes have; none with fewer than four modes."""
-    if len(fit.modes) < FEWEST_MODES or fit.settings.link != "cumulative":
+def covariate_refusal(fit: Fit, metrics: MetricTable | None) -> str:
+    """Why no model of worth on metrics can be fitted, as a sentence; empty if one can."""
+    if len(fit.modes) < FEWEST_MODES:
+        return (
+            f"With {len(fit.modes)} modes a line goes through their worths whatever they are: a model of "
+            f"worth on metrics takes at least {FEWEST_MODES} modes."
+        )
+    if fit.settings.engine == "gibbs":
+        return (
+            "The gibbs engine's prior is not normal, and the model of worth on metrics builds on one that is."
+        )
+    if metrics is None:
+        return "No metrics of laps stand beside these answers, so there is nothing to set worths on."
+    if not _standardised(fit.modes, metrics):
+        return "No metric is known of every mode and differs between modes, so there is nothing to set "
+        "worths on."
+    if not any(q.ranked for q in fit.questions):
+        return "No question is ranked, so there are no worths to set on metrics."
+    return ""
+
+
+def covariate_effects(fit: Fit, metrics: MetricTable | None) -> tuple[CovariateEffect, ...]:
+    """Every ranked question with every metric that all modes have; none where `covariate_refusal` says
+    why."""
+    if metrics is None or covariate_refusal(fit, metrics):
         return ()
-    tell = progress or (lambda done, total, now: None)
-    means = metrics.rows.groupby("mode").mean(numeric_only=True)
+    known = _standardised(fit.modes, metrics)
+    return tuple(
+        _effect(question.question.name, metric, sd, x, question.draws, fit.settings.prior_sd)
+        for question in fit.questions
+        if question.ranked and question.draws is not None
+        for metric, (x, sd) in known.items()
+    )
+
+
+def _standardised(modes: tuple[str, ...], metrics: MetricTable) -> dict[str, tuple[FloatArray, float]]:
+    """By metric that every mode has: the modes' means, centred and in their own sd, and that sd."""
     known = {}
     for measure in measures_in(metrics):
-        x = means[measure.name].reindex(fit.modes).to_numpy(float)
-        if not np.isnan(x).any() and x.std() > 0:
-            known[measure.name] = (x - x.mean()) / x.std()
-    ranked = [q for q in fit.questions if q.ranked]
-    total, done, found = len(ranked) * len(known), 0, []
-    for question in ranked:
-        counts = count_responses(table, question.question)
-        for name, x in known.items():
-            by_name = x[[fit.modes.index(mode) for mode in counts.modes]]
-            found.append(_effect(counts, question, name, by_name, fit))
-            done += 1
-            tell(done, total, question.question.short or question.question.name)
-    return tuple(found)
+        x = mode_means(metrics, measure.name, modes)
+        if not np.isnan(x).any() and x.std() > 1e-9 * np.abs(x).max():
+            known[measure.name] = ((x - x.mean()) / x.std(), float(x.std()))
+    return known
 
 
-def _effect(counts: Counts, question: QuestionFit, metric: str, x: FloatArray, fit: Fit) -> CovariateEffect:
-    import pymc as pm
+def _effect(
+    question: str, metric: str, sd: float, x: FloatArray, draws: Draws, prior_sd: float
+) -> CovariateEffect:
+    """The posterior of slope and residual sd, in the directions in which what the answers say is independent.
 
-    used = counts if question.hierarchical else counts.pooled()
-    n_modes, n_people, levels = len(used.modes), len(used.participants), used.levels
-    basis = zero_sum_basis(n_modes)
-    with pm.Model():
-        slope = pm.Normal("slope", 0.0, SLOPE_SD)
-        residual_sd = pm.HalfNormal("residual_sd", RESIDUAL_SD_SCALE)
-        rest = pm.Normal("rest", 0.0, 1.0, shape=n_modes - 1)
-        ability = slope * x + residual_sd * pm.math.dot(basis, rest)
-        eta = ability[used.mode_a] - ability[used.mode_b]
-        if fit.settings.side_effect:
-            eta = eta + pm.Normal("side_effect", 0.0, SIDE_EFFECT_SD)
-        if question.hierarchical:
-            spread = pm.HalfNormal("subject_sd", SUBJECT_SD_SCALE)
-            own = pm.math.dot(pm.Normal("own", 0.0, 1.0, shape=(n_people, n_modes - 1)), basis.T)
-            eta = eta + spread * (own[used.participant, used.mode_a] - own[used.participant, used.mode_b])
-        _likelihood(pm, eta, used.responses[:, ::-1], levels)
-        chains = pm.sample(
-            draws=500,
-            tune=500,
-            chains=4,
-            nuts_sampler="nutpie",
-            random_seed=fit.settings.seed,
-            progressbar=False,
-            compute_convergence_checks=False,
-            target_accept=0.9,
-        ).posterior
-    draws = np.asarray(chains["slope"])
-    low, high = hdi(draws.ravel(), HDI_PROBABILITY)
+    Along direction i with precision p and estimate m, ``m ~ Normal(slope x_i, sqrt(1 / p + residual_sd^2))``.
+    """
+    basis = zero_sum_basis(len(x))
+    ability = draws.ability.reshape(-1, len(x)) @ basis
+    total = np.linalg.inv(np.cov(ability, rowvar=False))
+    precision, axes = np.linalg.eigh(total - np.eye(len(total)) / prior_sd**2)
+    precision = np.maximum(precision, _LEAST_PRECISION)
+    estimate = (axes.T @ total @ ability.mean(axis=0)) / precision
+    along = axes.T @ (basis.T @ x)
+
+    weight = 1.0 / (1.0 / precision + _RESIDUALS[:, None] ** 2)
+    inverse_variance = (weight * along**2).sum(axis=1) + SLOPE_SD**-2
+    mean = (weight * along * estimate).sum(axis=1) / inverse_variance
+    fits = 0.5 * np.log(weight).sum(axis=1) - 0.5 * np.log(inverse_variance)
+    fits += 0.5 * inverse_variance * mean**2 - 0.5 * (weight * estimate**2).sum(axis=1)
+    fits -= 0.5 * (_RESIDUALS / RESIDUAL_SD_SCALE) ** 2
+    of_residual = np.exp(fits - fits.max())
+    of_residual /= of_residual.sum()
+
+    apart = (_SLOPES - mean[:, None]) * np.sqrt(inverse_variance)[:, None]
+    of_slope = of_residual @ (np.exp(-0.5 * apart**2) * np.sqrt(inverse_variance)[:, None])
+    of_slope /= of_slope.sum()
+    slope_mean = float(of_slope @ _SLOPES)
+    low, high = _highest(of_slope)
     return CovariateEffect(
-        question.question.name,
+        question,
         metric,
-        float(draws.mean()),
-        float(low),
-        float(high),
-        float((draws > 0).mean()),
-        float(np.asarray(chains["residual_sd"]).mean()),
-        bool(convergence(draws[None]).rhat_max < RHAT_BELOW),
+        sd,
+        slope_mean,
+        float(np.sqrt(of_slope @ (_SLOPES - slope_mean) ** 2)),
+        low,
+        high,
+        float(of_slope[_SLOPES > 0].sum() + 0.5 * of_slope[_SLOPES == 0].sum()),
+        float(of_residual @ _RESIDUALS),
     )
 
 
-def _likelihood(pm, eta, ascending, levels) -> None:  # type: ignore[no-untyped-def]
-    """Cumulative logit of the counts, answers from B much to A much."""
-    half = levels // 2
-    if levels == 2:
-        pm.Binomial("answers", n=ascending.sum(axis=1), logit_p=eta, observed=ascending[:, 1])
-        return
-    gaps = pm.HalfNormal("gaps", CUT_GAP_SCALE, shape=half)
-    cuts = pm.math.cumsum(gaps)
-    theta = pm.math.concatenate([-cuts[::-1], cuts])
-    below = pm.math.sigmoid(theta[None, :] - eta[:, None])
-    first, last = below[:, :1], 1 - below[:, -1:]
-    chances = pm.math.concatenate([first, below[:, 1:] - below[:, :-1], last], axis=1)
-    pm.Multinomial(
-        "answers", n=ascending.sum(axis=1), p=pm.math.clip(chances, 1e-12, 1.0), observed=ascending
-    )
+def _highest(of_slope: FloatArray) -> tuple[float, float]:
+    """Ends of the slopes of highest density that hold 94 % together (a mixture of concentric hills: one
+    piece)."""
+    order = np.argsort(-of_slope, kind="stable")
+    inside = order[: int(np.searchsorted(np.cumsum(of_slope[order]), HDI_PROBABILITY)) + 1]
+    return float(_SLOPES[inside.min()]), float(_SLOPES[inside.max()])

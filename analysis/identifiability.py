@@ -58,7 +58,10 @@ def examine(
         return Examination(_refusal(counts, groups, missing), missing, ())
     warnings = []
     if has_participants and len(counts.participants) == 1:
-        warnings.append("All answers are one participant's: the ranking is that person's, not people's.")
+        warnings.append(
+            "All answers are one participant's: what they say of other people rests on the prior for how "
+            "much people differ."
+        )
     if counts.levels > 2 and ties.sum() == compared.sum():
         warnings.append("Every answer is a tie: the modes can't be told apart.")
     else:
@@ -66,8 +69,8 @@ def examine(
     few = [mode for mode, n in zip(modes, compared.sum(axis=1), strict=True) if n < FEW_COMPARISONS]
     if few:
         warnings.append(
-            f"Few data: {_named(few)} {_are(few)} in fewer than {FEW_COMPARISONS} comparisons; "
-            "the ranking rests on the prior as much as on the answers."
+            f"Few data: {_named(few)} {_are(few)} in fewer than {FEW_COMPARISONS} comparisons; the ranking "
+            "rests on the prior as much as on the answers."
         )
     if side_effect:
         warnings += _sides(counts)
@@ -116,8 +119,8 @@ def _separation(modes: tuple[str, ...], wins: NDArray[np.int64], ties: NDArray[n
         if drawn or (won and lost):
             continue
         said.append(
-            f"{_named(group)} {'won' if won else 'lost'} every comparison with the other modes: "
-            "how far they are apart rests on the prior."
+            f"{_named(group)} {'won' if won else 'lost'} every comparison with the other modes: how far they "
+            "are apart rests on the prior."
         )
     return said
 
@@ -132,8 +135,8 @@ def _sides(counts: Counts) -> list[str]:
         design[row, [a, b, -1]] = 1.0, -1.0, 1.0
     if np.linalg.matrix_rank(design) < len(counts.modes):
         return [
-            "No pair was shown with its sides exchanged and the side effect can't be told from the modes: "
-            "it rests on its prior. A model without side effect may be meant."
+            "No pair was shown with its sides exchanged and the side effect can't be told from the modes: it "
+            "rests on its prior. A model without side effect may be meant."
         ]
     return [
         "No pair was shown with its sides exchanged: the side effect is told from the modes only by how "

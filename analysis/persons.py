@@ -65,7 +65,8 @@ class Agreement:
     people : tuple of PersonWorth
         Participant by participant, mode by mode.
     reason : str
-        Why there is nothing to say, if there is nothing; all else is empty or NaN then.
+        Why nothing is said of single participants, where nothing is; their shares are NaN then, and all else
+        too if the model knows no differences between people.
     """
 
     question: str
@@ -137,33 +138,41 @@ def own_abilities(ability: FloatArray, parameters: Mapping[str, FloatArray], nod
 def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int) -> Agreement:
     name, nan = question.question.name, float("nan")
 
-    def nothing(reason: str) -> Agreement:
-        return Agreement(name, "", nan, nan, nan, nan, (), reason)
+    def nothing(reason: str, first: str = "", new_person: float = nan) -> Agreement:
+        return Agreement(name, first, nan, nan, nan, new_person, (), reason)
 
     draws = question.draws
     if draws is None or not question.ranked:
         return nothing("The question is not ranked.")
     if "subject_sd" not in draws.parameters:
-        return nothing("Participants are pooled in this fit, so it knows no person's own order.")
+        why = (
+            "Participants are pooled in this fit"
+            if table.has_participants
+            else "The answers name no participants"
+        )
+        return nothing(f"{why}, so nothing is known of single people's own order.")
+    first = max(range(len(fit.modes)), key=lambda k: question.modes[k].p_best)
+    kept = thinned(draws, _DRAWS)
+    prior = own_abilities(kept.ability, kept.parameters, prior_nodes(len(fit.modes)))
+    new_person = float((prior.argmax(axis=-1) == first).mean())
     if len(fit.modes) > MOST_MODES:
-        return nothing(f"Persons' own worths are worked out for at most {MOST_MODES} modes.")
+        reason = f"Each participant's own worths are worked out for at most {MOST_MODES} modes."
+        return nothing(reason, fit.modes[first], new_person)
     counts = count_responses(table, question.question)
     own, effective = _own_draws(draws, fit.modes, counts, seed)
     if effective < FEWEST_NODES:
-        return nothing("There are so many answers a person that their own worths would be too rough.")
-    first = max(range(len(fit.modes)), key=lambda k: question.modes[k].p_best)
+        reason = "There are so many answers a person that each participant's own worths would be too rough."
+        return nothing(reason, fit.modes[first], new_person)
     is_first = own.argmax(axis=-1) == first
     shares = is_first.mean(axis=0)
     low, high = hdi(shares, HDI_PROBABILITY)
-    kept = thinned(draws, _DRAWS)
-    prior = own_abilities(kept.ability, kept.parameters, prior_nodes(len(fit.modes)))
     return Agreement(
         name,
         fit.modes[first],
         float(shares.mean()),
         float(low),
         float(high),
-        float((prior.argmax(axis=-1) == first).mean()),
+        new_person,
         _person_worths(counts, fit.modes, own),
     )
 

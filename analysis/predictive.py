@@ -46,7 +46,8 @@ class PredictiveCheck:
     ----------
     kind : {"wins", "ties", "level", "spread"}
         Share of a pair's answers for mode i; share of ties; share of one answer on the scale (A and B as they
-        were shown); standard deviation over people of their mean answer, turned to the first mode.
+        were shown); root mean square, over people and pairs, of each person's net answer to a pair around
+        that of all.
     what : str
         Which pair or which answer; empty for ties and spread.
     observed : float

@@ -3,14 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from analysis.covariates import CovariateEffect, covariate_effects
+from analysis.covariates import CovariateEffect, covariate_effects, covariate_refusal
 from analysis.fit import fit
 from analysis.lag import LagExclusion, LagLimits, lag_changes, without_laggy
 from analysis.leaving_out import ModelScore, model_scores
+from analysis.moderation import Moderation, moderation
 from analysis.results import Fit
 from analysis.sensitivity import PriorShift, prior_shifts
 from data.errors import InputError
-from data.responses import LagTable, MetricTable, ResponseTable
+from data.responses import BackgroundTable, LagTable, MetricTable, ResponseTable
 
 Progress = Callable[[int, int, str], None]
 LAGGY = LagLimits(latency_ms=100.0, skipped_percent=1.0)
@@ -31,12 +32,18 @@ class Refits:
         What leaving out laggy comparisons would change; None if nobody guided the robot.
     effects : tuple of CovariateEffect
         Worth on metrics, where there are modes enough.
+    no_effects : str
+        Why there are none, as a sentence; else empty.
+    moderation : Moderation
+        Whether people with another background prefer other modes.
     """
 
     scores: tuple[ModelScore, ...]
     shifts: tuple[PriorShift, ...]
     lag: LagExclusion | None
     effects: tuple[CovariateEffect, ...]
+    no_effects: str
+    moderation: Moderation
 
 
 def refits(
@@ -44,6 +51,7 @@ def refits(
     fitted: Fit,
     lag: LagTable | None = None,
     metrics: MetricTable | None = None,
+    background: BackgroundTable | None = None,
     progress: Callable[[str], Progress] | None = None,
 ) -> Refits:
     """Fit everything again that a full report compares.
@@ -56,15 +64,18 @@ def refits(
         Called with the name of a stage; gives the callable that hears of its steps.
     """
     tell = progress or (lambda name: lambda done, total, now: None)
-    return Refits(
-        model_scores(table, fitted.settings, tell("Models compared, participants left out")),
-        prior_shifts(table, fitted, tell("Other priors")),
-        _without_laggy(table, fitted, lag),
-        covariate_effects(table, fitted, metrics, tell("Worth on metrics")) if metrics is not None else (),
-    )
+    scores = model_scores(table, fitted, tell("Models compared, participants left out"))
+    shifts = prior_shifts(table, fitted, tell("Other priors"))
+    prompt = _without_laggy(table, fitted, lag, tell)
+    no_effects = covariate_refusal(fitted, metrics)
+    effects = () if no_effects else covariate_effects(fitted, metrics)
+    groups = moderation(table, fitted, background, tell("Groups of people"))
+    return Refits(scores, shifts, prompt, effects, no_effects, groups)
 
 
-def _without_laggy(table: ResponseTable, fitted: Fit, lag: LagTable | None) -> LagExclusion | None:
+def _without_laggy(
+    table: ResponseTable, fitted: Fit, lag: LagTable | None, tell: Callable[[str], Progress]
+) -> LagExclusion | None:
     if lag is None:
         return None
     try:
@@ -75,4 +86,5 @@ def _without_laggy(table: ResponseTable, fitted: Fit, lag: LagTable | None) -> L
         return LagExclusion(LAGGY, names, len(names), 0)
     if not kept.excluded.comparisons:
         return kept.excluded
-    return replace(kept.excluded, changes=lag_changes(fitted, fit(kept.table, fitted.settings)))
+    again = fit(kept.table, fitted.settings, tell("Without laggy comparisons"))
+    return replace(kept.excluded, changes=lag_changes(fitted, again))

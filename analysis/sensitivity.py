@@ -1,4 +1,9 @@
-"""Do the priors decide? Worths and first places under narrower and wider priors."""
+"""Do the priors decide? Worths and first places under narrower and wider priors.
+
+Another scale of the abilities' prior is fitted again. Another scale of the subject sd's is not: the draws
+of the report are weighted by the ratio of the two priors, the largest weights smoothed, and where k-hat
+says that they cannot carry it nothing is reported.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -8,6 +13,7 @@ import numpy as np
 
 from analysis.fit import fit
 from analysis.model import SUBJECT_SD_SCALE
+from analysis.pareto import smoothed
 from analysis.results import Draws, Fit, QuestionFit
 from data.responses import ResponseTable
 
@@ -48,13 +54,11 @@ def prior_shifts(
     shifts: list[PriorShift] = []
     if fitted.settings.engine != "gibbs":
         for k, factor in enumerate(FACTORS):
-            tell(k, len(FACTORS), f"prior times {factor:g}")
             scale = factor * fitted.settings.prior_sd
-            again = fit(table, replace(fitted.settings, prior_sd=scale))
+            again = fit(table, replace(fitted.settings, prior_sd=scale), _part(tell, k))
             for question, other in zip(fitted.questions, again.questions, strict=True):
                 then = {m.mode: (m.worth_mean, m.p_best) for m in other.modes}
                 shifts += _shifts(question, f"ability ~ ZeroSumNormal({scale:g})", then)
-        tell(len(FACTORS), len(FACTORS), "")
     for factor in FACTORS:
         scale = factor * SUBJECT_SD_SCALE
         for question in fitted.questions:
@@ -62,6 +66,15 @@ def prior_shifts(
                 then = _reweighted(question.draws, fitted.modes, scale)
                 shifts += _shifts(question, f"subject_sd ~ HalfNormal({scale:g})", then)
     return tuple(shifts)
+
+
+def _part(tell: Progress, k: int) -> Progress:
+    """Progress of the k-th of the fits, as progress of all of them."""
+
+    def report(done: int, total: int, now: str) -> None:
+        tell(k * total + done, len(FACTORS) * total, now)
+
+    return report
 
 
 def _shifts(question: QuestionFit, prior: str, then: dict[str, tuple[float, float]]) -> list[PriorShift]:
@@ -80,15 +93,12 @@ def _shifts(question: QuestionFit, prior: str, then: dict[str, tuple[float, floa
 
 
 def _reweighted(draws: Draws, modes: tuple[str, ...], scale: float) -> dict[str, tuple[float, float]]:
-    """Worth and chance to rank first under ``subject_sd ~ HalfNormal(scale)``, by importance weights."""
+    """Worth and chance to rank first under ``subject_sd ~ HalfNormal(scale)``, by smoothed importance
+    weights."""
     sd = draws.parameters["subject_sd"].reshape(-1)
-    logs = 0.5 * sd**2 * (SUBJECT_SD_SCALE**-2 - scale**-2)
-    weights = np.exp(logs - logs.max())
-    weights /= weights.sum()
-    if 1.0 / (weights**2).sum() < FEWEST_EFFECTIVE:
+    weights = smoothed(0.5 * sd**2 * (SUBJECT_SD_SCALE**-2 - scale**-2))
+    if not weights.trusted or weights.effective < FEWEST_EFFECTIVE:
         return {}
-    worth = draws.worth.reshape(-1, len(modes))
+    share, worth = np.exp(weights.log), draws.worth.reshape(-1, len(modes))
     is_best = worth.argmax(axis=1)[:, None] == np.arange(len(modes))
-    return {
-        mode: (float(weights @ worth[:, k]), float(weights @ is_best[:, k])) for k, mode in enumerate(modes)
-    }
+    return {mode: (float(share @ worth[:, k]), float(share @ is_best[:, k])) for k, mode in enumerate(modes)}

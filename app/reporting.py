@@ -18,7 +18,7 @@ from app.studies import open_study
 from data.errors import InputError
 from data.locations import check_folder, default_store
 from data.response_csv import read_response_csv
-from data.responses import LagTable, MetricTable, ResponseTable, StuckTable
+from data.responses import BackgroundTable, LagTable, MetricTable, ResponseTable, StuckTable
 from data.store import Store
 from data.study import Study
 
@@ -50,6 +50,7 @@ class _Evidence:
     lag: LagTable | None = None
     excluded: LagExclusion | None = None
     metrics: MetricTable | None = None
+    background: BackgroundTable | None = None
 
 
 def make_report(request: Request) -> ReportResult:
@@ -117,6 +118,7 @@ def _refitted(evidence: _Evidence, fitted: Fit) -> Refits:
             fitted,
             lag=evidence.lag if evidence.excluded is None else None,
             metrics=evidence.metrics,
+            background=evidence.background,
             progress=stage,
         )
 
@@ -163,4 +165,5 @@ def _read(request: Request) -> _Evidence:
             stored.study,
             store.lag_table(stored, include_simulated=request.include_simulated),
             metrics=store.metric_table(stored, include_simulated=request.include_simulated),
+            background=store.background_table(stored, include_simulated=request.include_simulated),
         )

@@ -2,10 +2,12 @@
 
 import hashlib
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Self
 
 import pandas as pd
+
+from data.study import BackgroundQuestion
 
 
 @dataclass(frozen=True)
@@ -118,14 +120,27 @@ class MetricTable:
         One row per comparison and mode in it with any lap that was finished or ended stuck: ``participant``,
         ``comparison``, ``mode`` (str), then a float column a metric, units in the names: the mean over those
         laps, NaN where none has it.
-    background : mapping of str to mapping of str to str
-        By participant, the answers to the study's questions about the person.
     """
 
     rows: pd.DataFrame
-    background: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def without(self, comparisons: Collection[str]) -> Self:
         """The same without some comparisons."""
         kept = ~self.rows["comparison"].isin(list(comparisons))
         return replace(self, rows=self.rows[kept].reset_index(drop=True))
+
+
+@dataclass(frozen=True)
+class BackgroundTable:
+    """What participants said about themselves.
+
+    Attributes
+    ----------
+    questions : tuple of BackgroundQuestion
+        Those of the study, in its order.
+    answers : mapping of str to mapping of str to str
+        By participant, by the question's name; without an entry where nothing was answered.
+    """
+
+    questions: tuple[BackgroundQuestion, ...]
+    answers: Mapping[str, Mapping[str, str]]

@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_PAIRS = 28
-"""More pairs than these are not drawn: the most compared stand for the rest."""
+"""More pairs than these are not all drawn."""
+STANDING_FOR_ALL = 12
+"""So many of the most compared stand for the rest then."""
 _COLOURS = {5: (DATA, DATA_2, SUNKEN, DATA_2, DATA), 3: (DATA_2, SUNKEN, DATA_2), 2: (DATA_2, DATA_2)}
 _ROW_PX, _HEAD_PX, _FOOT_PX = 25, 30, 14
 
@@ -50,7 +52,10 @@ def draw_answers(
     for the same boundary. All bars share one scale, so that their offsets can be compared.
     """
     with house_style():
-        shown = [sorted(pairs, key=lambda p: -p.n)[:MOST_PAIRS] for pairs in shares]
+        shown = [
+            sorted(pairs, key=lambda p: -p.n)[: MOST_PAIRS if len(pairs) <= MOST_PAIRS else STANDING_FOR_ALL]
+            for pairs in shares
+        ]
         shown = [[p for p in pairs if p in kept] for pairs, kept in zip(shares, shown, strict=True)]
         two = len(questions) > 1 and len(modes) <= 8 and all(width_px(one_line(m)) < 60 for m in modes)
         width = (WIDTH_PX - 36) / 2 if two else WIDTH_PX

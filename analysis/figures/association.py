@@ -1,12 +1,13 @@
 """Worth beside what was measured: one small picture a question and metric, intervals both ways."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analysis.association import Measure, ModeMeasure
-from analysis.figures.labels import fitted, one_line
+from analysis.figures.labels import fitted, one_line, width_px
 from analysis.figures.style import (
     DATA,
     INK,
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_COLUMNS = 6
-_LABEL_PX, _CELL_PX, _GAP_PX, _HEAD_PX, _FOOT_PX = 118, 84, 12, 40, 44
+_LABEL_PX, _CELL_PX, _GAP_PX, _HEAD_PX, _FOOT_PX, _KEY_LINE_PX = 118, 84, 12, 40, 26, 19
 
 
 def draw_association(
@@ -46,7 +47,9 @@ def draw_association(
     drawings = []
     with house_style():
         for number, part in enumerate(parts):
-            height = _HEAD_PX + len(measures) * (_CELL_PX + _GAP_PX) + _FOOT_PX
+            key = _key(modes)
+            below = _HEAD_PX + len(measures) * (_CELL_PX + _GAP_PX) + _FOOT_PX
+            height = below + _KEY_LINE_PX * len(key)
             figure = new_figure(height)
             width = min(150.0, (WIDTH_PX - _LABEL_PX) / len(part) - _GAP_PX)
             high = max(m.worth_hdi_high for q in part for m in q.modes)
@@ -69,8 +72,9 @@ def draw_association(
                 lines = _wrapped(measure.words)
                 for k, text in enumerate([*lines, *([f"[{measure.unit}]"] if measure.unit else [])]):
                     write_text(figure, 0, top + 26 + 13 * k, text, color=INK if k < len(lines) else INK_2)
-            write_text(figure, _LABEL_PX, height - 18, "across: worth", fontsize=8.4)
-            _draw_key(figure, height - 18, modes)
+            write_text(figure, 0, below, "across: worth", fontsize=8.4)
+            for line, entries in enumerate(key):
+                _draw_key_line(figure, below + _KEY_LINE_PX * line, entries)
             name = "association" if len(parts) == 1 else f"association_{number + 1}"
             drawings.append(finish(figure, name, alt, tag))
     return tuple(drawings)
@@ -93,7 +97,7 @@ def _draw_cell(
     ends = [v for m in own for v in (m.low, m.high, m.mean) if not np.isnan(v)]
     low_end, high_end = min(ends), max(ends)
     pad = 0.12 * (high_end - low_end or 1.0)
-    axes.set_xlim(0, high * 1.03)
+    axes.set_xlim(-0.06 * high, high * 1.03)
     axes.set_ylim(low_end - pad, high_end + pad)
     ticks = [t for t in (0, 0.2, 0.4, 0.6, 0.8) if t <= high]
     axes.vlines(ticks, low_end - pad, high_end + pad, color=LINE, linewidth=0.6, zorder=0)
@@ -113,20 +117,41 @@ def _draw_cell(
         )
 
 
-def _draw_key(figure: "Figure", y: float, modes: tuple[str, ...]) -> None:
+@dataclass(frozen=True)
+class _Entry:
+    """A mode in the key, and where it begins [px]."""
+
+    place: int
+    text: str
+    left: float
+
+
+def _key(modes: tuple[str, ...]) -> list[list[_Entry]]:
+    """The lines of the key; none where there are more modes than markers, and none has its own."""
     if len(modes) > len(MARKERS):
-        return
-    x = _LABEL_PX + 110.0
+        return []
+    lines: list[list[_Entry]] = [[]]
+    x = float(_LABEL_PX)
     for k, mode in enumerate(modes):
-        swatch = place_axes(figure, x, y - 9, 12, 12)
+        text = fitted(mode, 200, 8.4)
+        width = 17 + width_px(text, 8.4) + 18
+        if x + width > WIDTH_PX and lines[-1]:
+            lines.append([])
+            x = float(_LABEL_PX)
+        lines[-1].append(_Entry(k, text, x))
+        x += width
+    return lines
+
+
+def _draw_key_line(figure: "Figure", y: float, entries: Sequence[_Entry]) -> None:
+    for entry in entries:
+        swatch = place_axes(figure, entry.left, y - 9, 12, 12)
         swatch.set_xticks([])
         swatch.set_yticks([])
         swatch.set_xlim(-1, 1)
         swatch.set_ylim(-1, 1)
-        draw_point(swatch, 0, 0, k)
-        text = fitted(mode, 90, 8.4)
-        write_text(figure, x + 17, y, text, fontsize=8.4)
-        x += 17 + 8 * min(len(text), 12) + 14
+        draw_point(swatch, 0, 0, entry.place)
+        write_text(figure, entry.left + 17, y, entry.text, fontsize=8.4)
 
 
 def _wrapped(words: str) -> list[str]:

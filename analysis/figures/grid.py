@@ -29,13 +29,16 @@ from analysis.figures.style import (
 from analysis.results import QuestionFit
 
 if TYPE_CHECKING:
-    from matplotlib.colors import Colormap
+    from matplotlib.colors import Colormap, Normalize
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
 
-NUMBERED_UP_TO = 8
-"""With more modes cells are shaded and carry no numbers."""
+IN_ORDER_UP_TO = 8
+"""More modes are sorted by their mean rank, and their cells hold no second line."""
+NUMBERED_UP_TO = 20
+"""With more modes cells carry no numbers: a key says what their shades mean."""
 _GAP_PX = 26
+_KEY_PX = 30
 _NOTE_PT = 7.4
 
 
@@ -76,7 +79,8 @@ def draw_grids(
 
     ``middle`` is the colour of an even chance: light where that means ignorance, darker where it is much.
     ``darkest`` is the chance that is drawn darkest: where no cell comes near 1, a lower one lets differences
-    show. A question without a grid (``grid_of`` gives None) is named and said to be not ranked.
+    show, and shades then follow its square root. A question without a grid (``grid_of`` gives None) is named
+    and said to be not ranked.
     """
     with house_style():
         size = len(modes)
@@ -88,13 +92,15 @@ def draw_grids(
         turned = max(width_px(m) for m in distinct(modes, 24)) > cell - 4 and column_title == ""
         head = 26 + (min(label_px, 110) + 6 if turned else 20)
         panel_height = head + cell * _height_ratio(size) * size + 22
+        key = _KEY_PX if size > NUMBERED_UP_TO else 0
         rows_per_part = max(1, int(PART_HEIGHT_PX / panel_height))
         per_part = rows_per_part * per_row
         parts = math.ceil(len(questions) / per_part)
         drawings = []
         for part in range(parts):
             shown = list(zip(questions, grids, strict=True))[part * per_part : (part + 1) * per_part]
-            figure = new_figure(panel_height * math.ceil(len(shown) / per_row))
+            height = panel_height * math.ceil(len(shown) / per_row)
+            figure = new_figure(height + key)
             for k, (question, grid) in enumerate(shown):
                 left = (k % per_row) * panel_width
                 top = (k // per_row) * panel_height
@@ -114,6 +120,8 @@ def draw_grids(
                     middle,
                     darkest,
                 )
+            if key:
+                _write_key(figure, label_px, height + 8, middle, darkest)
             drawings.append(finish(figure, name if parts == 1 else f"{name}_{part + 1}", alt, tag))
         return tuple(drawings)
 
@@ -123,11 +131,12 @@ def _label_room(modes: tuple[str, ...]) -> float:
 
 
 def _cell_px(size: int, label_px: float, grids: Sequence[Grid | None]) -> float:
-    if size <= NUMBERED_UP_TO:
+    if size <= IN_ORDER_UP_TO:
         notes = {note for grid in grids if grid for row in grid.notes for note in row}
         wanted = 8 + max((width_px(note, _NOTE_PT) for note in notes), default=0.0)
         return min(max(56.0 if size <= 3 else 48.0, wanted), (WIDTH_PX - label_px) / size)
-    return min(30.0, (WIDTH_PX - label_px) / size, (PAGE_HEIGHT_PX - 190) / size)
+    widest = 46.0 if size <= NUMBERED_UP_TO else 30.0
+    return min(widest, (WIDTH_PX - label_px) / size, (PAGE_HEIGHT_PX - 220) / size)
 
 
 def _height_ratio(size: int) -> float:
@@ -165,15 +174,15 @@ def _draw_panel(
         np.arange(size + 1),
         np.arange(size + 1),
         np.ma.masked_invalid(grid.shares),
-        cmap=_shades(middle),
-        vmin=0,
-        vmax=darkest,
+        cmap=_shades(middle, darkest),
+        norm=_norm(darkest),
         edgecolors=SURFACE,
         linewidth=1.5 if size <= NUMBERED_UP_TO else 0.2,
         rasterized=size > NUMBERED_UP_TO,
     )
     axes.add_patch(_frame(size))
     small = 9.0 if cell >= 13 else 0.6 * cell
+    every = 1 if size <= 20 or turned else 5
     for k, label in enumerate(distinct(grid.rows, 24)):
         y = top + head + height * (k + 0.5) + small * 0.45
         write_text(
@@ -201,7 +210,7 @@ def _draw_panel(
                 fontsize=small,
                 rotation_mode="default",
             )
-        else:
+        elif every == 1 or k == 0 or (k + 1) % every == 0:
             write_text(
                 figure, x, top + head - 6, label, ha="center", color=INK if not column_title else INK_2
             )
@@ -236,6 +245,7 @@ def _write_cells(
                 text_of(share),
                 ha="center",
                 weight=weight,
+                fontsize=9.0 if cell >= 32 else 8.0,
                 color=SURFACE if dark else INK,
             )
             if note:
@@ -250,13 +260,37 @@ def _write_cells(
                 )
 
 
-def _shades(middle: str) -> "Colormap":
+def _write_key(figure: "Figure", left: float, top: float, middle: str, darkest: float) -> None:
+    """What the shades of cells without numbers mean."""
+    write_text(figure, left - 8, top + 9, "chance", ha="right", fontsize=8.4)
+    for k in range(5):
+        chance = darkest * (k / 4 if darkest == 1.0 else (k / 4) ** 2)
+        x = left + 74.0 * k
+        swatch = place_axes(figure, x, top, 22, 11)
+        swatch.set_xticks([])
+        swatch.set_yticks([])
+        swatch.set_facecolor(_shades(middle, darkest)(float(_norm(darkest)(chance))))
+        for spine in swatch.spines.values():
+            spine.set(visible=True, color=LINE_STRONG, linewidth=0.6)
+        write_text(figure, x + 27, top + 9, f"{100 * chance:.0f} %", fontsize=8.4)
+
+
+def _norm(darkest: float) -> "Normalize":
+    from matplotlib.colors import Normalize, PowerNorm
+
+    return Normalize(0.0, 1.0) if darkest == 1.0 else PowerNorm(0.5, 0.0, darkest)
+
+
+def _shades(middle: str, darkest: float) -> "Colormap":
     """White to the data colour through that of an even chance.
 
-    It steps where a chance becomes likely, so that text is legible on both sides.
+    It steps where a chance becomes likely, so that text is legible on both sides; not where the scale ends
+    below certainty.
     """
     from matplotlib.colors import LinearSegmentedColormap
 
+    if darkest < 1.0:
+        return LinearSegmentedColormap.from_list("part", [SURFACE, DATA], N=512).with_extremes(bad=SUNKEN)
     stops = [(0.0, SURFACE), (0.5, middle), (0.79, "#9DB1BB"), (0.81, "#577686"), (1.0, DATA)]
     return LinearSegmentedColormap.from_list("data", stops, N=512).with_extremes(bad=SUNKEN)
 

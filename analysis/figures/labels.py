@@ -1,6 +1,7 @@
 """Names from outside made fit for a drawing: one line, no control characters, short enough."""
 
 import unicodedata
+from collections.abc import Sequence
 from functools import lru_cache
 
 LIKELY = 0.8
@@ -87,6 +88,24 @@ def fitted(text: str, room_px: float, size_pt: float = 9, bold: bool = False) ->
         else:
             too_long = middle
     return shortened(whole, fits)
+
+
+def apart(heights: Sequence[tuple[float, str]], least: float) -> list[tuple[float, str]]:
+    """Names by the heights where they belong, lowest first, moved up where two would stand closer."""
+    placed: list[tuple[float, str]] = []
+    for height, name in sorted(heights):
+        placed.append((max(height, placed[-1][0] + least) if placed else height, name))
+    return placed
+
+
+def fitted_pair(first: str, second: str, room_px: float, size_pt: float = 9) -> str:
+    """``first over second`` in a width: where it is too long, both names are shortened alike."""
+    whole = f"{one_line(first)} over {one_line(second)}"
+    if width_px(whole, size_pt) <= room_px:
+        return whole
+    half = (room_px - width_px(" over ", size_pt)) / 2
+    spare = max(0.0, half - width_px(one_line(first), size_pt), half - width_px(one_line(second), size_pt))
+    return f"{fitted(first, half + spare, size_pt)} over {fitted(second, half + spare, size_pt)}"
 
 
 def percent_in_words(probability: float) -> str:

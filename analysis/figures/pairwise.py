@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.figures.grid import Grid, draw_grids
+from analysis.figures.grid import IN_ORDER_UP_TO, Grid, draw_grids
 from analysis.figures.labels import one_line, percent
 from analysis.figures.style import DATA_TINT, Drawing
 from analysis.results import QuestionFit
@@ -23,7 +23,7 @@ def draw_pairwise(
         if not question.ranked:
             return None
         shown = modes
-        if len(modes) > 8:
+        if len(modes) > IN_ORDER_UP_TO:
             shown = tuple(m.mode for m in sorted(question.modes, key=lambda m: m.rank_mean))
         place = {mode: k for k, mode in enumerate(shown)}
         shares = np.full((len(modes), len(modes)), np.nan)
@@ -31,7 +31,7 @@ def draw_pairwise(
         for pair in question.pairs:
             i, j = place[pair.mode_i], place[pair.mode_j]
             shares[i, j], shares[j, i] = pair.p_i_above_j, 1 - pair.p_i_above_j
-            if len(modes) <= 8:
+            if len(modes) <= IN_ORDER_UP_TO:
                 notes[i][j] = f"{pair.wins_i}-{pair.ties}-{pair.wins_j}"
                 notes[j][i] = f"{pair.wins_j}-{pair.ties}-{pair.wins_i}"
         return Grid(shares, shown, shown, notes)

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 PANELS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("Side effect", ("side_effect",)),
     ("Cut-points", ("cut_1", "cut_2")),
-    ("Ties", ("log_nu", "log_theta")),
-    ("Differences between people", ("subject_sd",)),
+    ("Ties", ("log_nu",)),
+    ("Between people", ("subject_sd",)),
 )
 """The panels with the parameters they show; a panel no question has is left out."""
 
@@ -43,13 +43,14 @@ def draw_parameters(questions: Sequence[QuestionFit], tag: str = "") -> Drawing 
             return None
         pitch = 24
         longest = max(width_px(one_line(q.question.name)) for q in shown)
-        left = min(190.0, 16 + longest)
+        left = min(190.0, max(44.0, 16 + longest))
         gap = 30
         width = (WIDTH_PX - left - gap * (len(panels) - 1) - 8) / len(panels)
         figure = new_figure(30 + pitch * len(shown) + 42)
         for row, question in enumerate(shown):
             name = fitted(question.question.name, left - 14)
             write_text(figure, left - 14, 30 + pitch * (row + 0.5) + 4, name, ha="right", color=INK)
+        write_text(figure, left - 14, 30 + pitch * len(shown) + 17, "logit", ha="right", fontsize=8.4)
         for k, (title, names) in enumerate(panels):
             x = left + k * (width + gap)
             write_text(figure, x, 16, title, fontsize=9, color=INK, weight="bold")

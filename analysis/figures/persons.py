@@ -1,5 +1,6 @@
 """Each participant's own worths, beside the group's."""
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 MOST_INTERVALS = 24
 """With more people than these their intervals would hide the dots."""
-_PLOT_PX, _HEAD_PX, _FOOT_PX = 130, 30, 44
+_PLOT_PX, _HEAD_PX, _FOOT_PX = 130, 40, 44
 
 
 def draw_persons(
@@ -37,8 +38,11 @@ def draw_persons(
     """One panel a question: a dot a participant for every mode, the group's worth as its marker beside
     them."""
     shown = [(q, a) for q, a in zip(questions, found, strict=True) if a.people]
-    top_of_scale = max(p.worth_hdi_high for _, a in shown for p in a.people)
+    highest = max(p.worth_hdi_high for _, a in shown for p in a.people)
+    step = 0.2 if highest > 0.4 else 0.1
+    top_of_scale = min(1.0, step * math.ceil(highest / step))
     per_row = 1 if len(shown) == 1 else 3 if len(modes) <= 4 else 2
+    is_one = max(len({p.participant for p in a.people}) for _, a in shown) == 1
 
     def draw(figure: "Figure", k: int, left: float, top: float, width: float) -> None:
         question, agreement = shown[k]
@@ -46,8 +50,9 @@ def draw_persons(
         axes = place_axes(figure, left + 22, top + _HEAD_PX, width - 22, _PLOT_PX)
         axes.set_xlim(-0.5, len(modes) - 0.5)
         axes.set_ylim(0, top_of_scale)
-        ticks = [t for t in (0, 0.2, 0.4, 0.6, 0.8, 1.0) if t <= top_of_scale + 1e-9]
-        axes.set_yticks(ticks, ["0" if t == 0 else f"{t:.1f}".lstrip("0") for t in ticks])
+        ticks = [t * step for t in range(round(top_of_scale / step) + 1)]
+        axes.set_yticks(ticks, [f"{t:.1f}".removeprefix("0").removesuffix(".0") or "0" for t in ticks])
+        write_text(figure, left, top + _HEAD_PX - 8, "worth", fontsize=8.4)
         axes.set_xticks([])
         axes.hlines(ticks, -0.5, len(modes) - 0.5, color=LINE, linewidth=0.75, zorder=0)
         axes.hlines(
@@ -79,9 +84,10 @@ def draw_persons(
                 ha="center",
                 color=INK,
             )
-        text = f"own first is {one_line(agreement.first)}: {percent_in_words(agreement.share_mean)}"
+        share = percent_in_words(agreement.share_mean)
+        text = f"{share}: own first is {one_line(agreement.first)}"
         if width_px(text, 8.4) > width - 22:
-            text = f"{percent_in_words(agreement.share_mean)} agree"
+            text = f"chance of the same first: {share}" if is_one else f"{share} agree"
         write_text(
             figure,
             left + 22 + (width - 22) / 2,
@@ -92,7 +98,9 @@ def draw_persons(
         )
 
     said = [
-        f"{one_line(a.question)}: {percent_in_words(a.share_mean)} of people have {one_line(a.first)} first"
+        f"{one_line(a.question)}: {'a chance of ' if is_one else ''}{percent_in_words(a.share_mean)} "
+        f"{'that' if is_one else 'of'} {'the own first is' if is_one else 'people have'} {one_line(a.first)}"
+        f"{'' if is_one else ' first'}"
         for _, a in shown
     ]
     heights = [_HEAD_PX + _PLOT_PX + _FOOT_PX] * len(shown)

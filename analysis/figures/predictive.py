@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from analysis.figures.labels import fitted, one_line
+from analysis.figures.labels import fitted, one_line, width_px
 from analysis.figures.panels import draw_panels
 from analysis.figures.style import (
     DATA,
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 MOST_PAIRS = 10
 """Of more pairs those that the model predicts worst are drawn."""
 _ROW_PX, _HEAD_PX, _FOOT_PX = 16, 40, 30
+_LONG_PX = 170
+"""Checks whose names need more room have panels of the whole width."""
 _NAMES = {"ties": "ties", "spread": "people apart"}
 
 
@@ -35,11 +37,12 @@ def draw_predictive(
     """One panel a question: observed shares as dots on the central 94 % of the predictions."""
     of = {q.name: _shown([c for c in checks if c.question == q.name]) for q in questions}
     shown = [q for q in questions if of[q.name]]
+    longest = max(width_px(_name(c), 8.4) for own in of.values() for c in own)
 
     def draw(figure: "Figure", k: int, left: float, top: float, width: float) -> None:
         rows = of[shown[k].name]
         write_heading(figure, left, top + 16, shown[k], width)
-        label, right = 0.36 * width, 30.0
+        label, right = min(max(0.36 * width, 12 + longest), 0.55 * width), 30.0
         write_text(figure, left + width, top + _HEAD_PX - 6, "p", ha="right", fontsize=8.4)
         axes = place_axes(figure, left + label, top + _HEAD_PX, width - label - right, _ROW_PX * len(rows))
         axes.set_xlim(0, max(1.0, *(c.predicted_high for c in rows), *(c.observed for c in rows)))
@@ -69,7 +72,7 @@ def draw_predictive(
                 zorder=3,
             )
             y = top + _HEAD_PX + _ROW_PX * (row + 0.5) + 4
-            name = fitted(_NAMES.get(check.kind, check.what), label - 8, 8.4)
+            name = fitted(_name(check), label - 8, 8.4)
             write_text(figure, left + label - 8, y, name, ha="right", color=INK, fontsize=8.4)
             write_text(
                 figure,
@@ -92,8 +95,12 @@ def draw_predictive(
         f"Hardly predicted: {', '.join(far[:12]) if far else 'none'}."
     )
     heights = [_HEAD_PX + _ROW_PX * len(of[q.name]) + _FOOT_PX for q in shown]
-    per_row = 1 if len(shown) == 1 else 2
+    per_row = 1 if len(shown) == 1 or longest > _LONG_PX else 2
     return draw_panels(heights, draw, per_row=per_row, name="predictive", alt=alt, tag=tag)
+
+
+def _name(check: PredictiveCheck) -> str:
+    return _NAMES.get(check.kind) or one_line(check.what)
 
 
 def _shown(checks: list[PredictiveCheck]) -> list[PredictiveCheck]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.figures.grid import NUMBERED_UP_TO, Grid, draw_grids
+from analysis.figures.grid import IN_ORDER_UP_TO, NUMBERED_UP_TO, Grid, draw_grids
 from analysis.figures.labels import one_line, percent
 from analysis.figures.style import Drawing
 from analysis.results import QuestionFit
@@ -20,7 +20,7 @@ def draw_ranks(
         if not question.ranked:
             return None
         shown = list(question.modes)
-        if len(modes) > NUMBERED_UP_TO:
+        if len(modes) > IN_ORDER_UP_TO:
             shown.sort(key=lambda m: m.rank_mean)
         shares = np.array([mode.rank_probabilities for mode in shown], dtype=float)
         return Grid(shares, tuple(mode.mode for mode in shown), ranks, ())

@@ -1,10 +1,14 @@
-"""How often the robot got stuck under each mode."""
+"""How often the robot got stuck under each mode, per comparison and per minute."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isnan
+from typing import TYPE_CHECKING
 
 from analysis.figures.labels import distinct, fitted, one_line, width_px
 from analysis.figures.style import (
     DATA,
+    DATA_2,
     INK,
     INK_2,
     LINE,
@@ -19,32 +23,103 @@ from analysis.figures.style import (
 )
 from analysis.stuck import StuckRate
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COUNTS_PX, _GAP_PX, _TOP_PX, _FOOT_PX = 64, 34, 40, 56
+_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A rate with its interval, and the same over people."""
+
+    mean: float
+    low: float
+    high: float
+    over_people: tuple[float, float, float]
+
 
 def draw_stuck(rates: Sequence[StuckRate], tag: str = "") -> Drawing:
-    """Rates with intervals, one row a mode, and the counts behind them."""
+    """Rates with intervals, one row a mode, and the counts behind them; below each the rate over people."""
     with house_style():
-        modes = tuple(rate.mode for rate in rates)
-        pitch = 26 if len(rates) <= 24 else 14
-        names = distinct(modes, 26)
-        left = min(200.0, max(60.0, 14 + max(width_px(name) for name in names)))
-        right, top, height = 96, 24, pitch * len(rates)
-        figure = new_figure(top + height + 40)
-        axes = place_axes(figure, left, top, WIDTH_PX - left - right, height)
-        highest = max(0.2, *(rate.rate_hdi_high for rate in rates))
-        step = 0.2 if highest > 0.5 else 0.1 if highest > 0.2 else 0.05
-        limit = min(1.0, step * (int(highest / step) + 1))
-        ticks = [k * step for k in range(round(limit / step) + 1)]
-        axes.set_xlim(0, limit)
-        axes.set_ylim(len(rates), 0)
-        axes.set_yticks([])
-        axes.set_xticks(ticks, [f"{100 * t:.0f} %" for t in ticks])
-        axes.vlines(ticks, 0, len(rates), color=LINE, linewidth=0.75, zorder=0)
-        write_text(figure, WIDTH_PX, top - 8, "stuck / comparisons", ha="right", fontsize=8.4)
+        shares = [
+            _Row(r.rate_mean, r.rate_hdi_low, r.rate_hdi_high, (b.mean, b.hdi_low, b.hdi_high))
+            for r in rates
+            for b in (r.between,)
+        ]
+        minutes = [
+            _Row(
+                r.per_minute_mean,
+                r.per_minute_hdi_low,
+                r.per_minute_hdi_high,
+                (b.mean, b.hdi_low, b.hdi_high),
+            )
+            for r in rates
+            if (b := r.per_minute_between) is not None and not isnan(r.per_minute_mean)
+        ]
+        panels = [("Share of comparisons", shares, True)]
+        if len(minutes) == len(rates):
+            panels.append(("Per minute of exposure", minutes, False))
+        pitch = 30.0 if len(rates) <= 20 else 18.0
+        names = distinct(tuple(rate.mode for rate in rates), 26)
+        left = min(180.0, max(40.0, 14 + max(width_px(name) for name in names)))
+        height = pitch * len(rates)
+        figure = new_figure(_TOP_PX + height + _FOOT_PX)
+        width = (WIDTH_PX - left - _COUNTS_PX - 12 - _GAP_PX * (len(panels) - 1)) / len(panels)
+        for k, (title, rows, is_share) in enumerate(panels):
+            x = left + k * (width + _GAP_PX)
+            write_text(figure, x, 16, title, color=INK, weight="bold")
+            axes = place_axes(figure, x, _TOP_PX - 8, width, height)
+            _scale(axes, rows, is_share)
+            for row, drawn in enumerate(rows):
+                _draw_row(axes, row, drawn, len(rates))
+        write_text(figure, WIDTH_PX, 16, "stuck", ha="right", fontsize=8.4)
         for row, (rate, name) in enumerate(zip(rates, names, strict=True)):
-            axes.hlines(row + 0.5, rate.rate_hdi_low, rate.rate_hdi_high, color=DATA, linewidth=1.15)
-            draw_point(axes, rate.rate_mean, row + 0.5, row, len(rates) > 8)
-            y = top + pitch * (row + 0.5) + 4
+            y = _TOP_PX - 8 + pitch * (row + 0.5) + 3
             write_text(figure, left - 12, y, fitted(name, left - 12), ha="right", color=INK)
-            write_text(figure, WIDTH_PX, y, f"{rate.stuck} / {rate.comparisons}", ha="right", color=INK_2)
+            write_text(figure, WIDTH_PX, y, f"{rate.stuck:,} / {rate.comparisons:,}", ha="right", color=INK_2)
+        _write_key(figure, left, _TOP_PX + height + 38)
         said = "; ".join(f"{one_line(r.mode)} {r.stuck} of {r.comparisons}" for r in rates)
         return finish(figure, "stuck", f"Comparisons with the robot stuck: {said}.", tag)
+
+
+def _scale(axes: "Axes", rows: Sequence[_Row], is_share: bool) -> None:
+    """A scale from 0 to above the highest interval, in about five steps."""
+    highest = max(max(row.high, row.over_people[2]) for row in rows)
+    step = next((s for s in _STEPS if highest / s <= 5.0), _STEPS[-1])
+    limit = step * (int(highest / step) + 1)
+    if is_share:
+        limit = min(1.0, limit)
+    ticks = [k * step for k in range(round(limit / step) + 1)]
+    axes.set_xlim(0, limit)
+    axes.set_ylim(len(rows), 0)
+    axes.set_yticks([])
+    axes.set_xticks(ticks, [f"{100 * t:.0f} %" if is_share else f"{t:g}" for t in ticks])
+    axes.vlines(ticks, 0, len(rows), color=LINE, linewidth=0.75, zorder=0)
+
+
+def _draw_row(axes: "Axes", row: int, rate: _Row, modes: int) -> None:
+    mean, low, high = rate.over_people
+    axes.hlines(row + 0.4, rate.low, rate.high, color=DATA, linewidth=1.15)
+    axes.hlines(row + 0.74, low, high, color=DATA_2, linewidth=1.15)
+    axes.vlines(mean, row + 0.63, row + 0.85, color=DATA_2, linewidth=2.0)
+    draw_point(axes, rate.mean, row + 0.4, row, modes > 8)
+
+
+def _write_key(figure: "Figure", left: float, base: float) -> None:
+    x = left
+    for colour, text in ((DATA, "comparisons independent"), (DATA_2, "over people")):
+        mark = place_axes(figure, x, base - 8, 24, 8)
+        mark.set_xlim(0, 1)
+        mark.set_ylim(0, 1)
+        mark.set_xticks([])
+        mark.set_yticks([])
+        mark.hlines(0.5, 0, 1, color=colour, linewidth=1.15)
+        if colour == DATA_2:
+            mark.vlines(0.5, 0.0, 1.0, color=colour, linewidth=2.0)
+        else:
+            mark.plot([0.5], [0.5], "o", color=colour, markersize=4.6, markeredgewidth=0)
+        write_text(figure, x + 30, base, text, fontsize=8.4)
+        x += 30 + width_px(text, 8.4) + 20

@@ -128,6 +128,9 @@ def _draw_row_of_columns(
     axes.hlines(ticks, 0, len(questions), color=LINE, linewidth=0.75, zorder=0)
     axes.hlines(1 / len(modes), 0, len(questions), color=INK_3, linewidth=0.9, linestyle=(0, (1.5, 2.2)))
     base = plot_top + plot_height
+    write_text(
+        figure, 12, plot_top + plot_height / 2, "worth", rotation=90, ha="center", va="center", fontsize=8.4
+    )
     write_text(figure, _AXIS_PX - 6, base + 36, "first %", ha="right", fontsize=8.4)
     lines = place_axes(figure, _AXIS_PX, plot_top, width, plot_height + 88)
     lines.set_xlim(0, len(questions))
@@ -207,6 +210,7 @@ def _draw_panel_of_rows(
     ticks = [k * step for k in range(round(top / step) + 1)]
     axes.set_xticks(ticks, [_tick(t) for t in ticks])
     axes.set_yticks([])
+    write_text(figure, left - 12, plot_top + plot_height + 15, "worth", ha="right", fontsize=8.4)
     axes.vlines(ticks, -0.5, len(modes) - 0.5, color=LINE, linewidth=0.75, zorder=0)
     axes.vlines(1 / len(modes), -0.5, len(modes) - 0.5, color=INK_3, linewidth=0.9, linestyle=(0, (1.5, 2.2)))
     if not question.ranked:

@@ -27,8 +27,7 @@ _TRIALS = {
     "observed": "Participants watched a simulated robot. A real arm in the hand may be judged differently.",
     "guided": (
         "Participants guided a simulated robot in the browser: they saw how it moved, but felt no force. "
-        "Guiding "
-        "with a mouse is not force contact, and a real arm in the hand may be judged differently."
+        "Guiding with a mouse is not force contact, and a real arm in the hand may be judged differently."
     ),
     "external": (
         "Participants used a robot in the lab. An operator loaded each method and confirmed it: that it was "
@@ -76,8 +75,8 @@ def _about_the_source(table: ResponseTable, study: Study | None) -> list[str]:
         simulated, total = int(sources.get("simulated", 0)), int(sources.sum())
         if simulated < total:
             return [
-                f"{simulated:,} of {total:,} answers were made by simulated participants. "
-                "They are mixed with answers of people here: don't quote this as a result about people.",
+                f"{simulated:,} of {total:,} answers were made by simulated participants. They are mixed "
+                "with answers of people here: don't quote this as a result about people.",
                 *([_TRIALS[study.protocol.trial_source]] if study is not None else []),
             ]
         return [
@@ -91,8 +90,8 @@ def _about_the_number(fit: Fit) -> list[str]:
     people = max((q.n_participants for q in fit.questions), default=0)
     if 1 < people < FEW_PARTICIPANTS:
         return [
-            f"{people} participants are few: more could change the order. "
-            "“elbowroom power” tells how many are needed."
+            f"{people} participants are few: more could change the order. “elbowroom power” tells how many "
+            "are needed."
         ]
     return []
 
@@ -136,8 +135,8 @@ def _about_people(found: Sequence[Finding]) -> list[str]:
             divided.append((share, f))
     divided.sort(key=lambda pair: -pair[0])
     return [
-        f"People differ: for “{f.label}” about {percent(share)} % would put {isolated(f.rival)} "
-        f"above {isolated(f.first)}, although the group does not."
+        f"People differ: for “{f.label}” about {percent(share)} % would put {isolated(f.rival)} above "
+        f"{isolated(f.first)}, although the group does not."
         for share, f in divided[:_MOST_OF_A_KIND]
         if f.reading == "likely"
     ]
@@ -183,8 +182,8 @@ def unequal_delays(delays: Sequence[ModeDelay]) -> list[str]:
         (low, prompt), (high, laggy) = known[0], known[-1]
         what = "The input delay" if unit == " ms" else "The share of skipped ticks"
         said.append(
-            f"{what} was unequal: {high:.{digits}f}{unit} with {isolated(laggy)}, "
-            f"{low:.{digits}f}{unit} with {isolated(prompt)}. That alone can decide a comparison."
+            f"{what} was unequal: {high:.{digits}f}{unit} with {isolated(laggy)}, {low:.{digits}f}{unit} "
+            f"with {isolated(prompt)}. That alone can decide a comparison."
         )
     return said
 
@@ -211,7 +210,9 @@ def _about_checks(checks: int) -> list[str]:
 def _about_convergence(fit: Fit) -> list[str]:
     if np.isnan(fit.rhat_max):
         return []
-    figures = f"R-hat {fit.rhat_max:.3f}, ESS {fit.ess_min:,.0f}, {_divergences(fit)}"
+    figures = f"largest R-hat {fit.rhat_max:.3f}, smallest effective sample size {fit.ess_min:,.0f}"
+    if fit.settings.engine != "gibbs":
+        figures += f", {_divergences(fit)}"
     if fit.converged:
         return [f"The sampler converged: {figures}."]
     failed = [isolated(q.question.name) for q in fit.questions if _sampled(q) and not q.ranked]

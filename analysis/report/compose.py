@@ -5,37 +5,35 @@ from dataclasses import replace
 
 from analysis.closer_look import CloserLook
 from analysis.data_quality import DataQuality
-from analysis.figures.answers import MOST_PAIRS, draw_answers
+from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW
+from analysis.figures.answers import MOST_PAIRS, STANDING_FOR_ALL, draw_answers
 from analysis.figures.chains import draw_chains
-from analysis.figures.labels import isolated, one_line, percent_in_words
+from analysis.figures.grid import IN_ORDER_UP_TO
+from analysis.figures.labels import one_line
 from analysis.figures.pairwise import draw_pairwise
 from analysis.figures.parameters import draw_parameters
-from analysis.figures.ranks import draw_ranks, highest_chance
-from analysis.figures.stuck import draw_stuck
+from analysis.figures.ranks import draw_ranks
 from analysis.figures.worth import draw_worth
 from analysis.refits import Refits
 from analysis.report import page as pages
-from analysis.report.closer import (
-    agreement_section,
-    consistency_section,
-    equivalence_section,
-    predictive_section,
-    strength_section,
-)
+from analysis.report.cautions import unanswered
 from analysis.report.findings import findings, lead, listed
-from analysis.report.methods import methods, references
-from analysis.report.page import Page, Section
+from analysis.report.methods import methods
+from analysis.report.page import Page, Part, Section
+from analysis.report.pairs import equivalence_section, strength_section
+from analysis.report.people import agreement_section, consistency_section
 from analysis.report.physics import physics_section
+from analysis.report.predictions import predictive_section
 from analysis.report.quality import checks_section, delay_section, exclusion_section
-from analysis.report.refitted import refit_sections
+from analysis.report.references import cited
+from analysis.report.refitted import metric_sections, people_sections, refit_sections
+from analysis.report.stuck import contrasts_section, stuck_section
 from analysis.report.summary import known_comparisons
 from analysis.results import Fit
 from analysis.stuck import StuckRate
 from analysis.stuck_contrasts import StuckContrast
 from data.responses import ResponseTable
 from data.study import Study
-
-_ONE_PAGE_OF_MODES = 8
 
 
 def simulated_tag(table: ResponseTable) -> str:
@@ -60,74 +58,114 @@ def compose(
     """Everything the page prints, drawings included."""
     tag = simulated_tag(table)
     found = findings(fit)
-    worth, *sections = _numbered(
+    said = methods(fit, look, rates, refitted, study, versions)
+    names = unanswered(fit, study)
+    silent = [(q.name, q.short) for q in study.questions if q.name in names] if study is not None else []
+    worth, *parts = _numbered(
         [
-            _worth(fit, tag),
-            _pairwise(fit, tag),
-            equivalence_section(look, fit, tag),
-            _ranks(fit, tag),
-            _answers(fit, look, tag),
-            strength_section(look),
-            agreement_section(look, fit, tag),
-            consistency_section(look),
-            _stuck(rates, contrasts, tag),
-            pages.contrasts_section(contrasts),
-            physics_section(look, fit, tag, table.is_simulated),
-            delay_section(quality.delays),
-            exclusion_section(quality.excluded),
-            checks_section(quality.checks),
-            _parameters(fit, tag),
-            predictive_section(look, fit, tag),
-            _diagnostics(fit, tag),
-            *refit_sections(refitted),
+            Part("", _known(_worth(fit, tag))),
+            Part(
+                "The modes",
+                _known(
+                    _pairwise(fit, tag),
+                    equivalence_section(look, fit, tag),
+                    _ranks(fit, tag),
+                    _answers(fit, look, tag),
+                    strength_section(look),
+                ),
+            ),
+            Part(
+                "The participants",
+                _known(
+                    agreement_section(look, fit, tag),
+                    consistency_section(look),
+                    *people_sections(refitted, fit, tag),
+                    checks_section(quality.checks),
+                ),
+            ),
+            Part(
+                "The robot",
+                _known(
+                    stuck_section(rates, contrasts, tag),
+                    contrasts_section(contrasts, rates),
+                    physics_section(look, fit, tag, table.is_simulated),
+                    *metric_sections(refitted, fit),
+                    delay_section(quality.delays),
+                    exclusion_section(quality.excluded),
+                ),
+            ),
+            Part(
+                "The model",
+                _known(
+                    _parameters(fit, tag),
+                    predictive_section(look, fit, tag),
+                    *refit_sections(refitted),
+                    _diagnostics(fit, tag),
+                ),
+            ),
         ]
     )
     return Page(
         title=_title(table, study),
         subtitle=_subtitle(table, fit, study),
         tag=tag,
-        lead=lead(found, rates, table.is_simulated),
-        worth=worth,
+        lead=lead(found, rates, tag, [short or name for name, short in silent]),
+        worth=worth.sections[0],
         findings=found,
         unranked=tuple(q for q in fit.questions if not q.ranked),
+        unanswered=tuple(f"{name} {short}".strip() for name, short in silent),
         cautions=tuple(cautions),
-        sections=tuple(sections),
-        methods=methods(fit, look, rates, refitted),
-        references=references(fit, look, rates, refitted),
+        parts=tuple(part for part in parts if part.sections),
+        methods=said,
+        references=cited(" ".join(paragraph.text for paragraph in said)),
         provenance=_provenance(table, fit, study, versions),
         footer_left=f"Elbowroom, engine {fit.settings.engine}, Bradley-Terry, seed {fit.settings.seed}",
         footer_right=f"data {table.sha256[:4]} {table.sha256[4:8]}",
     )
 
 
-def _numbered(sections: Sequence[Section | None]) -> list[Section]:
-    """The sections that there are, their figures counted from 1, and the drawings' names with the number."""
-    kept, number = [], 0
-    for section in sections:
-        if section is None:
-            continue
-        if section.drawings:
-            number += 1
-            named = tuple(replace(d, name=f"figure_{number}_{d.name}") for d in section.drawings)
-            section = replace(section, drawings=named, caption_start=f"Figure {number}.")
-        kept.append(section)
-    return kept
+def _known(*sections: Section | None) -> tuple[Section, ...]:
+    return tuple(section for section in sections if section is not None)
+
+
+def _numbered(parts: Sequence[Part]) -> list[Part]:
+    """The same with the figures that there are counted from 1, and the drawings' names with the number."""
+    numbered, number = [], 0
+    for part in parts:
+        sections = []
+        for section in part.sections:
+            if section.drawings:
+                number += 1
+                named = tuple(replace(d, name=f"figure_{number}_{d.name}") for d in section.drawings)
+                section = replace(section, drawings=named, caption_start=f"Figure {number}.")
+            sections.append(section)
+        numbered.append(replace(part, sections=tuple(sections)))
+    return numbered
 
 
 def _title(table: ResponseTable, study: Study | None) -> str:
+    one = _participants(table) == 1
     if simulated_tag(table) == "simulated data":
-        return f"{'Which mode' if study is not None else 'What'} do simulated participants prefer?"
-    return f"{'Which control mode' if study is not None else 'What'} do people prefer?"
+        who = "does one simulated participant" if one else "do simulated participants"
+        return f"{'Which mode' if study is not None else 'What'} {who} prefer?"
+    who = "does one participant" if one else "do people"
+    return f"{'Which control mode' if study is not None else 'What'} {who} prefer?"
+
+
+def _participants(table: ResponseTable) -> int:
+    """How many people the answers name; 0 if they name none."""
+    rows = table.rows[~table.rows["check"].astype(bool) & (table.rows["participant"] != "")]
+    return int(rows["participant"].nunique()) if table.has_participants else 0
 
 
 def _subtitle(table: ResponseTable, fit: Fit, study: Study | None) -> str:
     rows = table.rows[~table.rows["check"].astype(bool)]
     title = one_line(study.title if study is not None else table.title)
     version = f", version {one_line(study.version)}" if study is not None else ""
-    people = rows.loc[rows["participant"] != "", "participant"].nunique()
+    people = _participants(table)
     shown = known_comparisons(rows)
     counts = [
-        *([_counted(people, "participant")] if table.has_participants and people else []),
+        *([_counted(people, "participant")] if people else []),
         *([_counted(shown, "comparison")] if shown else []),
         _counted(int(rows["count"].sum()), "answer"),
         _counted(len(fit.modes), "mode"),
@@ -142,46 +180,57 @@ def _counted(n: int, noun: str) -> str:
 def _worth(fit: Fit, tag: str) -> Section:
     worth = 1 / len(fit.modes)
     shown = f"{worth:.2f}" if worth >= 0.095 else f"{worth:.3f}"
-    many = len(fit.modes) > _ONE_PAGE_OF_MODES
+    many = len(fit.modes) > IN_ORDER_UP_TO
     lower = [q.question for q in fit.questions if q.question.polarity == "lower_is_better" and q.ranked]
     caption = (
         f"Worth of each mode: they add up to 1 in each question, and {shown} (dotted) is no preference. Thin "
-        "lines are 94 % intervals, thick lines 50 %. “First %” is the chance that the mode ranks first, bold "
-        "from 80 on."
+        "lines are 94 % credible intervals, thick lines 50 %. “First %” is the chance that the mode ranks "
+        "first, bold from 80 on."
     )
     if many:
         caption += " Modes are sorted by worth."
     for question in lower[:3]:
         name, short = one_line(question.name), one_line(question.short)
         caption += f" In {name} a high worth means “{short}”, which isn't better."
+    heading = "Preference by question"
+    if not any(q.ranked for q in fit.questions):
+        words = "No question is ranked, so there are no worths to draw: the reasons stand above."
+        return Section(heading, (), "", "", None, words=(words,))
     drawings = draw_worth(fit.questions, fit.modes, tag)
-    return Section("Preference by question", drawings, "", caption, pages.worth_table(fit), "appended")
+    return Section(heading, drawings, "", caption, pages.worth_table(fit), "appended")
 
 
-def _pairwise(fit: Fit, tag: str) -> Section:
+def _pairwise(fit: Fit, tag: str) -> Section | None:
+    ranked = [q for q in fit.questions if q.ranked]
+    if not ranked:
+        return None
     caption = "Chance, in per cent, that the row's mode ranks above the column's; darker is more likely."
-    if len(fit.modes) <= _ONE_PAGE_OF_MODES:
+    if len(fit.modes) <= IN_ORDER_UP_TO:
         caption += " Below it the answers behind it: for the row's mode, ties, for the column's."
-    drawings = draw_pairwise(fit.questions, fit.modes, tag)
+    else:
+        caption += " Modes are sorted by their mean rank."
+    drawings = draw_pairwise(ranked, fit.modes, tag)
     return Section("Pair by pair", drawings, "", caption, pages.pairwise_table(fit))
 
 
-def _ranks(fit: Fit, tag: str) -> Section:
+def _ranks(fit: Fit, tag: str) -> Section | None:
+    ranked = [q for q in fit.questions if q.ranked]
+    if len(fit.modes) < 3 or not ranked:
+        # Who is first of two is who is above the other: the figure before says it.
+        return None
     caption = "Chance, in per cent, that a mode (row) holds a rank (column); rank 1 is the highest worth."
-    if len(fit.modes) > _ONE_PAGE_OF_MODES:
-        caption += (
-            " Modes are sorted by their mean rank; darker is more likely, the darkest "
-            f"{percent_in_words(highest_chance(fit.questions))}."
-        )
-    drawings = draw_ranks(fit.questions, fit.modes, tag)
-    return Section("Which rank a mode may hold", drawings, "", caption, pages.ranks_table(fit))
+    if len(fit.modes) > IN_ORDER_UP_TO:
+        caption += " Modes are sorted by their mean rank."
+    drawings = draw_ranks(ranked, fit.modes, tag)
+    return Section("Possible ranks", drawings, "", caption, pages.ranks_table(fit))
 
 
 def _answers(fit: Fit, look: CloserLook, tag: str) -> Section:
     shares = look.shares
     caption = (
         "Answers to each pair, as shares to both sides of the middle: to the left those for the mode on the "
-        "left, to the right those for the other. The number is how many answers there are."
+        "left, to the right those for the other; a whole bar is 100 %. The number is how many answers there "
+        "are."
     )
     if any(pair.expected for pairs in shares for pair in pairs):
         caption += (
@@ -189,40 +238,9 @@ def _answers(fit: Fit, look: CloserLook, tag: str) -> Section:
             "lie far from the bar, the model does not describe the answers well, or the answers are few."
         )
     if any(len(pairs) > MOST_PAIRS for pairs in shares):
-        caption += f" Of many pairs the {MOST_PAIRS} most compared are shown."
+        caption += f" Of many pairs the {STANDING_FOR_ALL} most compared are shown."
     drawings = draw_answers([q.question for q in fit.questions], shares, fit.modes, tag)
-    return Section("The answers themselves", drawings, "", caption, pages.answers_table(fit, shares), "here")
-
-
-def _stuck(rates: Sequence[StuckRate], contrasts: Sequence[StuckContrast], tag: str) -> Section | None:
-    if not rates:
-        return None
-    caption = (
-        "Share of a mode's comparisons in which the robot got stuck at least once under that mode, with 94 % "
-        "intervals (uniform prior)."
-    )
-    surest = sorted(contrasts, key=lambda c: -abs(c.p_i_above_j - 0.5))
-    for contrast in surest[:2]:
-        high, low, chance = contrast.mode_i, contrast.mode_j, contrast.p_i_above_j
-        if chance < 0.5:
-            high, low, chance = low, high, 1 - chance
-        caption += (
-            f" The chance that {isolated(high)} has a higher rate than {isolated(low)} is "
-            f"{percent_in_words(chance)}."
-        )
-    caption += (
-        " In the numbers “over people” allows each person a rate of their own, as events cluster in "
-        "people; rates "
-        "per minute are of exposure to the mode. Rates hold for this task and no other."
-    )
-    return Section(
-        "How often the robot got stuck",
-        (draw_stuck(rates, tag),),
-        "",
-        caption,
-        pages.stuck_table(rates),
-        "here",
-    )
+    return Section("The answers", drawings, "", caption, pages.answers_table(fit, shares), "here")
 
 
 def _parameters(fit: Fit, tag: str) -> Section | None:
@@ -230,25 +248,27 @@ def _parameters(fit: Fit, tag: str) -> Section | None:
     if drawing is None:
         return None
     names = {p.name for q in fit.questions for p in q.parameters}
-    said = []
+    said, about = [], []
     if "side_effect" in names:
+        about.append("side effect")
         said.append("Side effect: above 0, what is shown as A is favoured.")
     if "cut_1" in names:
+        about.append("ties")
         said.append(
             "Cut-points: how large a difference must feel to be called “more” (circle) and “much more” "
             "(square)."
             if "cut_2" in names
             else "Cut-points: how large a difference must feel to be noticed."
         )
-    if names & {"log_nu", "log_theta"}:
+    if "log_nu" in names:
+        about.append("ties")
         said.append("Ties: the higher, the more answers see no difference.")
     if "subject_sd" in names:
-        said.append(
-            "Differences between people: spread of the participants' own abilities around the group's."
-        )
-    caption = f"{' '.join(said)} On the logit scale, with 94 % intervals."
+        about.append("people")
+        said.append("Between people: spread of the participants' own abilities around the group's.")
+    caption = f"{' '.join(said)} On the logit scale, with 94 % credible intervals."
     return Section(
-        "What else the model learnt",
+        f"{listed(about).capitalize()}",
         (drawing,),
         "",
         caption,
@@ -266,7 +286,15 @@ def _diagnostics(fit: Fit, tag: str) -> Section:
         else ""
     )
     drawings = (drawing,) if drawing else ()
-    return Section("Can the sampler be trusted?", drawings, "", caption, pages.diagnostics_table(fit), "here")
+    words = (
+        "R-hat compares the chains with each other (1: they agree), ESS is how many independent draws they "
+        f"are worth. A question is ranked if the largest R-hat is below {RHAT_BELOW} and the smallest ESS "
+        f"above {ESS_ABOVE:.0f}.",
+    )
+    table = pages.diagnostics_table(fit)
+    return Section(
+        "Can the sampler be trusted?", drawings, "", caption, table, "here", words, is_folded=bool(drawings)
+    )
 
 
 def _provenance(

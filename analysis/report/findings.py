@@ -9,6 +9,8 @@ from analysis.results import Fit, QuestionFit
 from analysis.stuck import StuckRate
 
 _MOST_NAMED = 6
+_TOGETHER = 0.94
+"""Chance that the modes which are named as an open question's possible firsts hold the place together."""
 _MOST_STUCK_NAMED = 3
 
 Reading = Literal["likely", "open", "not ranked"]
@@ -41,6 +43,14 @@ class Finding:
     ties: float
     reading: Reading
     label: str
+
+    @property
+    def worth(self) -> str:
+        """Worth of the first mode with its 94 % interval, as the page prints it; empty if not ranked."""
+        for m in self.question.modes:
+            if m.mode == self.first:
+                return f"{m.worth_mean:.2f} ({m.worth_hdi_low:.2f} to {m.worth_hdi_high:.2f})"
+        return ""
 
 
 @dataclass(frozen=True)
@@ -83,23 +93,40 @@ def _finding(question: QuestionFit, label: str) -> Finding:
     return Finding(question, first.mode, first.p_best, rival, above[rival], ties, reading, label)
 
 
-def lead(found: Sequence[Finding], stuck: Sequence[StuckRate], simulated: bool) -> tuple[Phrase, ...]:
-    """The first paragraph of the report, careful and plain."""
+def lead(
+    found: Sequence[Finding], stuck: Sequence[StuckRate], tag: str, unanswered: Sequence[str] = ()
+) -> tuple[Phrase, ...]:
+    """The first paragraph of the report, careful and plain.
+
+    Parameters
+    ----------
+    tag : str
+        ``simulated data``, ``partly simulated data`` or nothing.
+    unanswered : sequence of str
+        Questions of the study that nobody answered.
+    """
     likely = [f for f in found if f.reading == "likely"]
     still_open = [f for f in found if f.reading == "open"]
     phrases: list[Phrase] = []
-    if simulated:
-        phrases.append(Phrase("These answers were simulated, so they say nothing about people. "))
+    if tag:
+        what = "Some of these" if tag.startswith("partly") else "These"
+        say = "cannot tell what people prefer" if tag.startswith("partly") else "say nothing about people"
+        phrases.append(Phrase(f"{what} answers were simulated, so they {say}. "))
+    elif found and max(f.question.n_participants for f in found) == 1:
+        phrases.append(Phrase("All answers are one participant's: they tell little about other people. "))
     if len(found) == 1:
         phrases += _one_question(found[0])
     elif likely or still_open:
         phrases += [
-            Phrase(_opening(found, likely) + " "),
+            Phrase(_opening(found, likely, bool(unanswered)) + " "),
             *_likely_ones(likely),
             *_open_ones(still_open, likely),
         ]
     if len(found) > 1:
         phrases += _unranked_ones([f for f in found if f.reading == "not ranked"], len(found))
+    if unanswered:
+        names = listed([f"“{isolated(name)}”" for name in unanswered])
+        phrases.append(Phrase(f"Nobody answered {names}. "))
     if stuck:
         phrases.append(Phrase(_stuck_sentence(stuck)))
     return tuple(phrases)
@@ -131,14 +158,14 @@ def _one_question(found: Finding) -> list[Phrase]:
     ]
 
 
-def _opening(found: Sequence[Finding], likely: Sequence[Finding]) -> str:
+def _opening(found: Sequence[Finding], likely: Sequence[Finding], some_unanswered: bool) -> str:
     winners = {f.first for f in likely}
     if not likely:
         return "The answers don't settle a first place on any question yet."
     if len(winners) > 1:
         return "No mode comes first on every question."
     if len(likely) == len(found):
-        return "One mode is likely first on every question."
+        return f"One mode is likely first on every question{' that was answered' if some_unanswered else ''}."
     if any(f.reading == "open" for f in found):
         return "Some questions have a likely first place, others are open."
     return "Every question that could be ranked has a likely first place."
@@ -159,7 +186,8 @@ def _likely_ones(likely: Sequence[Finding]) -> list[Phrase]:
                 phrases.append(Phrase(joint))
             name = f"{isolated(mode)} {verb}" if g == 0 else ""
             phrases.append(Phrase(f"{name}“{f.label}”", True))
-            phrases.append(Phrase(f" ({percent_in_words(f.chance)}{_not_good(f)})"))
+            named = "a chance of " if k == g == 0 else ""
+            phrases.append(Phrase(f" ({named}{percent_in_words(f.chance)}{_not_good(f)})"))
     if len(likely) > _MOST_NAMED:
         phrases.append(Phrase(f"; {len(likely) - _MOST_NAMED} more are in the table below"))
     if likely:
@@ -179,7 +207,25 @@ def _open_ones(still_open: Sequence[Finding], likely: Sequence[Finding]) -> list
     else:
         where = f"For {listed([f'“{f.label}”' for f in still_open])}"
     still = "the first place is open" if likely else "more than one mode could be first"
-    return [Phrase(f"{where} {still}: more people could change it. ")]
+    phrases = [Phrase(f"{where} {still}: more answers could change it. ")]
+    if len(still_open) <= 2:
+        phrases += [Phrase(text) for f in still_open if (text := _contenders(f))]
+    return phrases
+
+
+def _contenders(found: Finding) -> str:
+    """The modes that may be first, where there are many more that hardly can."""
+    ordered = sorted(found.question.modes, key=lambda m: -m.p_best)
+    together, named = 0.0, []
+    for m in ordered:
+        named.append(isolated(m.mode))
+        together += m.p_best
+        if together >= _TOGETHER:
+            break
+    if len(named) > _MOST_NAMED or len(ordered) < 2 * len(named):
+        return ""
+    one = f"{', '.join(named[:-1])} or {named[-1]}" if len(named) > 1 else named[0]
+    return f"On “{found.label}” it is {one} with a chance of {percent_in_words(together)}. "
 
 
 def _unranked_ones(unranked: Sequence[Finding], total: int) -> list[Phrase]:
@@ -210,7 +256,9 @@ def _stuck_sentence(stuck: Sequence[StuckRate]) -> str:
     some = sorted((r for r in stuck if r.stuck), key=lambda r: -r.stuck / r.comparisons)
     none = [r for r in stuck if not r.stuck]
     if not some:
-        return "The robot never got stuck."
+        least, most = (f(r.comparisons for r in stuck) for f in (min, max))
+        shown = f"{most:,}" if least == most else f"{least:,} to {most:,}"
+        return f"The robot never got stuck, in {shown} comparisons with each mode."
     said = [f"in {r.stuck} of {r.comparisons} with {isolated(r.mode)}" for r in some[:_MOST_STUCK_NAMED]]
     said[0] = said[0].replace(" with ", " comparisons with ", 1)
     if len(some) > _MOST_STUCK_NAMED:

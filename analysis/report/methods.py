@@ -1,102 +1,44 @@
-"""The methods paragraph and the references of a report, said from the settings of its fit."""
+"""The methods paragraphs of a report, said from the settings of its fit, fit to go into a paper."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import exp, isnan, sqrt
+
+from markupsafe import Markup
 
 from analysis.closer_look import CloserLook
+from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW
 from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
+from analysis.figures.labels import LIKELY
+from analysis.fit import LONGER
 from analysis.refits import Refits
+from analysis.report.findings import listed
 from analysis.results import Fit
 from analysis.stuck import StuckRate
+from data.study import Study
+
+_QUANTILE = 1.8808
+"""Of the normal distribution: 94 % lie within so many standard deviations."""
+_SYMBOLS = {
+    "ability": "a",
+    "side_effect": "b",
+    "cut_1": "c₁",
+    "cut_2": "c₂",
+    "log_nu": "log ν",
+    "subject_sd": "τ",
+    "z": "z",
+    "worth": "w",
+    "theta": "θ",
+}
+"""What the formulas call the parameters that the fit's priors are named by."""
 
 
 @dataclass(frozen=True)
-class Reference:
-    """A source the methods rest on."""
+class Paragraph:
+    """Some sentences, or a formula that stands by itself."""
 
-    key: str
     text: str
-
-
-BRADLEY_TERRY = Reference(
-    "Bradley & Terry 1952",
-    "Bradley, R. A. and Terry, M. E. (1952). Rank analysis of incomplete block designs: I. The method of "
-    "paired comparisons. Biometrika 39(3/4), 324-345.",
-)
-RAO_KUPPER = Reference(
-    "Rao & Kupper 1967",
-    "Rao, P. V. and Kupper, L. L. (1967). Ties in paired-comparison experiments: a generalization of the "
-    "Bradley-Terry model. Journal of the American Statistical Association 62(317), 194-204.",
-)
-DAVIDSON = Reference(
-    "Davidson 1970",
-    "Davidson, R. R. (1970). On extending the Bradley-Terry model to accommodate ties in paired comparison "
-    "experiments. Journal of the American Statistical Association 65(329), 317-328.",
-)
-AGRESTI = Reference(
-    "Agresti 1992",
-    "Agresti, A. (1992). Analysis of ordinal paired comparison data. Applied Statistics 41(2), 287-297.",
-)
-CARON_DOUCET = Reference(
-    "Caron & Doucet 2012",
-    "Caron, F. and Doucet, A. (2012). Efficient Bayesian inference for generalized Bradley-Terry models. "
-    "Journal of Computational and Graphical Statistics 21(1), 174-196.",
-)
-CARMICHAEL = Reference(
-    "Carmichael et al. 2017",
-    "Carmichael, M. G., Aldini, S. and Liu, D. (2017). Human user impressions of damping methods for "
-    "singularity handling in human-robot collaboration. Australasian Conference on Robotics and Automation.",
-)
-HOFFMAN_GELMAN = Reference(
-    "Hoffman & Gelman 2014",
-    "Hoffman, M. D. and Gelman, A. (2014). The No-U-Turn sampler: adaptively setting path lengths in "
-    "Hamiltonian Monte Carlo. Journal of Machine Learning Research 15, 1593-1623.",
-)
-VEHTARI = Reference(
-    "Vehtari et al. 2021",
-    "Vehtari, A., Gelman, A., Simpson, D., Carpenter, B. and Bürkner, P.-C. (2021). Rank-normalization, "
-    "folding, and localization: an improved R-hat for assessing convergence of MCMC. Bayesian Analysis "
-    "16(2), 667-718.",
-)
-
-
-KRUSCHKE = Reference(
-    "Kruschke 2018",
-    "Kruschke, J. K. (2018). Rejecting or accepting parameter values in Bayesian estimation. Advances in "
-    "Methods "
-    "and Practices in Psychological Science 1(2), 270-280.",
-)
-GELMAN = Reference(
-    "Gelman et al. 1996",
-    "Gelman, A., Meng, X.-L. and Stern, H. (1996). Posterior predictive assessment of model fitness via "
-    "realized "
-    "discrepancies. Statistica Sinica 6(4), 733-760.",
-)
-KENDALL = Reference(
-    "Kendall & Babington Smith 1940",
-    "Kendall, M. G. and Babington Smith, B. (1940). On the method of paired comparisons. Biometrika 31(3/4), "
-    "324-345.",
-)
-RUBIN = Reference(
-    "Rubin 1981", "Rubin, D. B. (1981). The Bayesian bootstrap. The Annals of Statistics 9(1), 130-134."
-)
-FISHER = Reference(
-    "Fisher 1935",
-    "Fisher, R. A. (1935). The logic of inductive inference. Journal of the Royal Statistical Society "
-    "98(1), 39-82.",
-)
-MEHTA = Reference(
-    "Mehta et al. 1985",
-    "Mehta, C. R., Patel, N. R. and Gray, R. (1985). Computing an exact confidence interval for the common "
-    "odds "
-    "ratio in several 2 x 2 contingency tables. Journal of the American Statistical Association 80(392), "
-    "969-973.",
-)
-VEHTARI_LOO = Reference(
-    "Vehtari et al. 2017",
-    "Vehtari, A., Gelman, A. and Gabry, J. (2017). Practical Bayesian model evaluation using leave-one-out "
-    "cross-validation and WAIC. Statistics and Computing 27(5), 1413-1432.",
-)
+    is_formula: bool = False
 
 
 def methods(
@@ -104,40 +46,214 @@ def methods(
     look: CloserLook | None = None,
     rates: Sequence[StuckRate] = (),
     refitted: Refits | None = None,
-) -> tuple[str, ...]:
-    """Paragraphs that let someone repeat the analysis."""
+    study: Study | None = None,
+    versions: Mapping[str, str] | None = None,
+) -> tuple[Paragraph, ...]:
+    """Paragraphs that let someone repeat the analysis.
+
+    Parameters
+    ----------
+    study : Study or None
+        Where the study is that of 2017, the paper is named whose figure shows worths.
+    versions : mapping of str to str
+        Of the software behind the numbers, by name.
+    """
     more = [_closer(look), _stuck(rates), _refits(refitted)]
-    return (_model(fit), _worth(fit), _sampling(fit), *(text for text in more if text))
+    return (
+        *_model(fit),
+        Paragraph(_priors(fit)),
+        Paragraph(_reported(study)),
+        Paragraph(_sampling(fit, versions or {})),
+        *(Paragraph(text) for text in more if text),
+    )
 
 
-def references(
-    fit: Fit,
-    look: CloserLook | None = None,
-    rates: Sequence[StuckRate] = (),
-    refitted: Refits | None = None,
-) -> tuple[Reference, ...]:
-    """The sources of the model, the sampler and the checks that this report used."""
+def _formula(html: str) -> Paragraph:
+    return Paragraph(Markup(html), is_formula=True)
+
+
+def _model(fit: Fit) -> list[Paragraph]:
+    start = "Each question was analysed on its own with a Bayesian Bradley-Terry model (Bradley & Terry 1952)"
     levels = {q.question.levels for q in fit.questions}
-    used = [BRADLEY_TERRY]
+    if fit.settings.engine == "gibbs":
+        return _gibbs_model(start, levels)
+    hierarchical = any(q.hierarchical for q in fit.questions)
+    terms = ["<i>η</i> = <i>a</i><sub>A</sub> − <i>a</i><sub>B</sub>"]
+    explained = []
+    if fit.settings.side_effect:
+        terms.append("<i>b</i>")
+        explained.append("b is a side effect, a liking for whatever was shown as A")
+    if hierarchical:
+        terms.append("<i>τ</i> (<i>z</i><sub>A</sub> − <i>z</i><sub>B</sub>)")
+        explained.append(
+            "z are the participant's own deviations from the group, which add up to 0 over the modes, and τ "
+            "is their standard deviation, so that several answers of one person do not count as independent"
+        )
+    missing = []
+    if not fit.settings.side_effect:
+        missing.append("There is no side effect in this model.")
+    if not hierarchical:
+        missing.append(
+            "Participants have no deviations of their own in this model (pooled): their answers count as "
+            "independent."
+        )
+    where = f"Here {'; '.join(explained)}. " if explained else ""
+    return [
+        Paragraph(
+            f"{start}. Every mode has an ability a; the abilities of a question add up to 0. An answer to A "
+            "against B depends on the lead of A, on the logit scale:"
+        ),
+        _formula(" + ".join(terms)),
+        *_answers(fit, levels, " ".join([where.strip(), *missing]).strip()),
+    ]
+
+
+def _answers(fit: Fit, levels: set[int], before: str) -> list[Paragraph]:
+    """How a lead becomes an answer."""
     if fit.settings.link == "adjacent":
-        used.append(DAVIDSON)
-    elif levels & {3, 5}:
-        used.append(RAO_KUPPER)
-    if 5 in levels and fit.settings.engine != "gibbs":
-        used.append(AGRESTI)
-    used.append(CARON_DOUCET)
-    used.append(CARMICHAEL)
-    if fit.settings.engine != "gibbs":
-        used.append(HOFFMAN_GELMAN)
-    used.append(VEHTARI)
-    if look is not None:
-        used += [KRUSCHKE] if look.equivalences else []
-        used += [GELMAN] if look.checks else []
-        used += [KENDALL] if look.consistencies else []
-        used += [RUBIN] if look.associations else []
-    used += [FISHER, MEHTA] if len(rates) > 1 else []
-    used += [VEHTARI_LOO] if refitted is not None and refitted.scores else []
-    return tuple(used)
+        return [
+            Paragraph(f"{before} The odds of the three answers are those of Davidson (1970):".strip()),
+            _formula(
+                "<i>P</i>(A) : <i>P</i>(about the same) : <i>P</i>(B) = e<sup><i>η</i>/2</sup> : <i>ν</i> : "
+                "e<sup>−<i>η</i>/2</sup>"
+            ),
+        ]
+    if levels == {2}:
+        return [
+            Paragraph(f"{before} The chance that A is preferred is".strip()),
+            _formula("<i>P</i>(A) = 1 / (1 + e<sup>−<i>η</i></sup>)"),
+        ]
+    points = []
+    if 5 in levels:
+        points.append("(−c₂, −c₁, c₁, c₂) with five levels (Agresti 1992)")
+    if 3 in levels:
+        points.append("(−c₁, c₁) with three levels, which is the model of Rao & Kupper (1967)")
+    if 2 in levels:
+        points.append("0 with two levels, which is Bradley-Terry itself")
+    return [
+        Paragraph(
+            f"{before} Answers are ordered from B to A and cut from one latent logistic scale:".strip()
+        ),
+        _formula(
+            "<i>P</i>(answer ≤ <i>k</i>) = 1 / (1 + e<sup>−(<i>θ<sub>k</sub></i> − <i>η</i>)</sup>)",
+        ),
+        Paragraph(
+            f"The cut-points θ lie symmetrically, so that A and B weigh the same: {listed(points)}. The "
+            "larger a cut-point, the more answers fall into the middle."
+        ),
+    ]
+
+
+def _gibbs_model(start: str, levels: set[int]) -> list[Paragraph]:
+    pooled = (
+        "Answers of all participants count as independent (pooled), and there is no side effect. The "
+        "posterior was sampled as in Caron & Doucet (2012)."
+    )
+    if levels == {2}:
+        formula = (
+            "<i>P</i>(<i>i</i> over <i>j</i>) = <i>w<sub>i</sub></i> / (<i>w<sub>i</sub></i> + "
+            "<i>w<sub>j</sub></i>)"
+        )
+        return [
+            Paragraph(f"{start}. Every mode has a worth w:"),
+            _formula(formula),
+            Paragraph(pooled),
+        ]
+    formula = (
+        "<i>P</i>(<i>i</i> over <i>j</i>) = <i>w<sub>i</sub></i> / (<i>w<sub>i</sub></i> + "
+        "<i>θw<sub>j</sub></i>), <i>P</i>(about the same) = (<i>θ</i>² − 1) "
+        "<i>w<sub>i</sub>w<sub>j</sub></i> / ((<i>w<sub>i</sub></i> + <i>θw<sub>j</sub></i>) "
+        "(<i>θw<sub>i</sub></i> + <i>w<sub>j</sub></i>))"
+    )
+    much = " An answer “much more” was taken as “more”." if 5 in levels else ""
+    return [
+        Paragraph(
+            f"{start} with the ties of Rao & Kupper (1967). Every mode has a worth w, and ties have θ ≥ 1:"
+        ),
+        _formula(formula),
+        Paragraph(pooled + much),
+    ]
+
+
+def _priors(fit: Fit) -> str:
+    """The priors and what they mean."""
+    stated = [
+        f"{_SYMBOLS[name]} {'' if prior.startswith('flat') else '~ '}{_in_symbols(prior)}"
+        for name, prior in fit.priors.items()
+    ]
+    if fit.settings.engine == "gibbs":
+        return (
+            f"Priors: {'; '.join(stated)}. The Dirichlet is flat over all worths that add up to 1; abilities "
+            "are the logarithms of the worths, less their mean."
+        )
+    reach = _QUANTILE * sqrt(2.0) * fit.settings.prior_sd
+    return (
+        f"Priors: {'; '.join(stated)}. The last number of each is its standard deviation or scale; a "
+        "ZeroSumNormal is a normal distribution whose values are made to add up to 0. So before any answer "
+        f"94 % of the differences between two modes lie within {reach:.1f} logits, odds of {_odds(reach)} to "
+        "1. The worth of a mode is e to the power of its ability, divided by the sum of these over all modes."
+    )
+
+
+def _in_symbols(prior: str) -> str:
+    for name, symbol in _SYMBOLS.items():
+        prior = prior.replace(f"{name} +", f"{symbol} +")
+    return prior
+
+
+def _odds(logits: float) -> str:
+    return f"{exp(logits):,.0f}" if logits < 12 else "more than 100,000"
+
+
+def _reported(study: Study | None) -> str:
+    paper = study is not None and study.name.startswith("carmichael2017")
+    like = ", as in Figure 5 of Carmichael et al. (2017)" if paper else ""
+    return (
+        f"Worths lie between 0 and 1 and add up to 1{like}; on a scale of two levels, and for someone who is "
+        "like the group, the odds that one mode is chosen over another are the ratio of their worths. "
+        "Reported are posterior means with 94 % highest-density credible intervals (and 50 % ones, where "
+        "thick lines are drawn). The chance that a mode ranks first, holds a rank or stands above another is "
+        "the share of posterior draws in which it does; a first place is called likely from "
+        f"{100 * LIKELY:.0f} % on. Questions are not corrected for being several."
+    )
+
+
+def _acceptance(fit: Fit) -> float:
+    """Acceptance rate that NUTS adapted to; the engine fast lowers it in many dimensions."""
+    if fit.settings.engine != "fast":
+        return fit.settings.target_accept
+    free = len(fit.modes) - 1
+    sizes = [
+        len(q.parameters) + free * (1 + (q.n_participants if q.hierarchical else 0)) for q in fit.questions
+    ]
+    return fit.settings.acceptance(max(sizes, default=0))
+
+
+def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
+    settings = fit.settings
+    how = {
+        "fast": "the No-U-Turn sampler (Hoffman & Gelman 2014) of nutpie",
+        "pymc": "the No-U-Turn sampler (Hoffman & Gelman 2014) of PyMC (Abril-Pla et al. 2023)",
+        "gibbs": "the Gibbs sampler",
+    }[settings.engine]
+    accept = "" if settings.engine == "gibbs" else f", target acceptance {_acceptance(fit):g}"
+    software = f" Elbowroom {versions['elbowroom']}" if "elbowroom" in versions else " Elbowroom"
+    used = [f"{n} {versions[n]}" for n in ("nutpie", "pymc") if n in versions and settings.engine != "gibbs"]
+    said = (
+        f"Of each question{software} (engine “{settings.engine}”{''.join(f', {u}' for u in used)}) drew "
+        f"{settings.chains} chains of {settings.draws:,} draws after {settings.tune:,} of warm-up with "
+        f"{how}{accept}, seed {settings.seed}. A question counts as converged if the abilities, worths, "
+        f"ranks, differences and parameters all have a rank-normalised split R-hat below {RHAT_BELOW} and "
+        f"bulk and tail effective sample sizes above {ESS_ABOVE:.0f} (Vehtari et al. 2021); if not, up to "
+        f"{max(LONGER)} times as many draws were taken before it went unranked."
+    )
+    if isnan(fit.rhat_max):
+        return said
+    diverged = "" if settings.engine == "gibbs" else f", {fit.divergences:,} divergent draws"
+    return (
+        f"{said} In this report the largest R-hat is {fit.rhat_max:.3f} and the smallest effective sample "
+        f"size {fit.ess_min:,.0f}{diverged}."
+    )
 
 
 def _closer(look: CloserLook | None) -> str:
@@ -146,34 +262,31 @@ def _closer(look: CloserLook | None) -> str:
     said = []
     if look.equivalences:
         said.append(
-            f"Two modes are practically equal where their abilities differ by at most "
-            f"{EQUIVALENT_BELOW:.2f} logits, a "
-            f"preference of {100 * EQUIVALENT_CHANCE:.0f} in 100; the posterior probability of that region "
-            f"is given "
-            "(Kruschke 2018)."
+            "Two modes count as practically equal where their abilities differ by at most "
+            f"{EQUIVALENT_BELOW:.2f} logits, a preference of {100 * EQUIVALENT_CHANCE:.0f} in 100 where one "
+            "has to choose; the posterior probability of that region is given (Kruschke 2018)."
         )
     if any(a.people for a in look.agreements):
         said.append(
-            "Participants' own abilities are drawn given the group's parameters by importance weights on "
-            "quasi-random points of their prior."
+            "Participants' own abilities were drawn given each draw of the group's parameters: 128 "
+            "quasi-random points of a participant's prior, weighted by that participant's answers."
         )
     if look.checks:
         said.append(
-            "Posterior predictive checks (Gelman et al. 1996) draw new participants with the same "
-            "schedule; Bayesian "
-            "p-values count half of the predictions equal to what was observed."
+            "Posterior predictive checks (Gelman et al. 1996) drew new participants with the same schedule "
+            "(Bayarri & Castellanos 2007); their Bayesian p-values count half of the predictions that equal "
+            "what was observed."
         )
-    if look.consistencies:
+    if any(c.participant == "all" for c in look.consistencies):
         said.append(
-            "Circular triads, the coefficient of consistence and Kendall's u follow Kendall & Babington "
-            "Smith (1940), a "
-            "tie counting as half a preference each; u is compared with 1,000 sets of coin tosses."
+            "Circular triads, the coefficient of consistence zeta and the coefficient of agreement u follow "
+            "Kendall & Babington Smith (1940), a tie counting as half a preference for either; u is compared "
+            "with 1,000 sets of coin tosses."
         )
     if look.associations:
         said.append(
-            "Metrics are averaged over the laps of a comparison, then over each participant's comparisons; "
-            "intervals "
-            "are those of the Bayesian bootstrap over participants (Rubin 1981)."
+            "Metrics were averaged over the laps of a comparison, then over each participant's comparisons; "
+            "their intervals are those of the Bayesian bootstrap over participants (Rubin 1981)."
         )
     return " ".join(said)
 
@@ -181,77 +294,56 @@ def _closer(look: CloserLook | None) -> str:
 def _stuck(rates: Sequence[StuckRate]) -> str:
     if not rates:
         return ""
-    return (
-        "Stuck rates are shares of a mode's comparisons, with a uniform prior. Over people, each "
-        "participant's rate is "
-        "Beta distributed with uniform mean and intraclass correlation, and, per minute of exposure, Gamma "
-        "distributed "
-        "with Poisson counts. Rates are compared by their posteriors, and beside it by Fisher's exact test "
-        "(1935) and "
-        "the exact conditional test within participants (Mehta et al. 1985)."
-    )
-
-
-def _refits(refitted: Refits | None) -> str:
-    if refitted is None or not refitted.scores:
-        return ""
-    return (
-        "Models were compared by the log predictive density of participants left out, each model fitted "
-        "anew without "
-        "them, a participant's own deviations integrated out; standard errors are over participants "
-        "(Vehtari et al. "
-        "2017)."
-    )
-
-
-def _model(fit: Fit) -> str:
-    settings = fit.settings
+    per_minute = any(rate.per_minute_between is not None for rate in rates)
     said = [
-        "Every question was analysed on its own with a Bradley-Terry model (Bradley & Terry 1952): each mode "
-        "has an ability, and the answer to a comparison depends on the difference of the two abilities.",
-        fit.model if fit.model.endswith(".") else f"{fit.model}.",
+        "Stuck rates are shares of a mode's comparisons, with a uniform prior and comparisons independent; "
+        "over people, each participant has a rate of their own, Beta distributed, with uniform priors on its "
+        "mean and on the intraclass correlation."
     ]
-    if settings.engine == "gibbs":
-        said.append("It was sampled as in Caron & Doucet (2012), pooled and without a side effect.")
-    elif settings.link == "adjacent":
-        said.append("Ties follow Davidson (1970).")
-    else:
+    if per_minute:
         said.append(
-            "Answers are ordered categories cut from one latent scale at points that are symmetrical between "
-            "A and B; with two levels this is Bradley-Terry itself, with three it is the model of Rao & "
-            "Kupper (1967), and with five it keeps “much more” apart from “more” (Agresti 1992)."
+            "Per minute of exposure, the first has Poisson counts and a flat prior on the rate; over people, "
+            "rates are Gamma distributed, with an Exponential prior of mean 1 a minute on their mean, and r "
+            "uniform where r / (1 − r) is their squared coefficient of variation."
         )
-    if any(q.hierarchical for q in fit.questions):
+    if len(rates) > 1 and any(rate.stuck for rate in rates):
         said.append(
-            "Each participant may deviate from the group, so that several answers of one person don't count "
-            "as independent."
+            "Two rates are compared by their posteriors, comparisons independent, and beside it by two-sided "
+            "exact tests: Fisher's (Fisher 1935), and one conditional on how often each participant got "
+            "stuck (Mehta et al. 1985), neither corrected for several pairs."
         )
-    elif settings.engine != "gibbs":
-        said.append("Participants have no deviations of their own in this fit (pooled).")
-    if settings.side_effect and settings.engine != "gibbs":
-        said.append("A side effect takes up a liking for whatever was shown as A.")
     return " ".join(said)
 
 
-def _worth(fit: Fit) -> str:
-    priors = "; ".join(f"{name} ~ {prior}" for name, prior in fit.priors.items())
-    return (
-        "Worths are the abilities put through a softmax, draw by draw: they lie between 0 and 1 and add up "
-        "to 1, as in Figure 5 of Carmichael et al. (2017). Dots are posterior means and intervals are "
-        "highest-density intervals; the chance to rank first is the share of draws in which a mode is "
-        "highest." + (f" Priors: {priors}." if priors else "")
-    )
-
-
-def _sampling(fit: Fit) -> str:
-    settings = fit.settings
-    if settings.engine == "gibbs":
-        how = "the Gibbs sampler with gamma-distributed skills"
-    else:
-        how = f"the No-U-Turn sampler (Hoffman & Gelman 2014; target acceptance {settings.target_accept:g})"
-    return (
-        f"Engine “{settings.engine}” drew {settings.chains} chains of {settings.draws:,} with {how} after "
-        f"{settings.tune:,} draws of warm-up each, seed {settings.seed}; a question that did not pass the "
-        "convergence gate (rank-normalised split R-hat and effective sample size, Vehtari et al. 2021) is "
-        "not ranked."
-    )
+def _refits(refitted: Refits | None) -> str:
+    if refitted is None:
+        return ""
+    said = []
+    if refitted.scores:
+        said.append(
+            "Models were compared by the log predictive density of participants left out, a participant's "
+            "own "
+            "deviations integrated out (Merkle et al. 2019): from draws weighted by Pareto-smoothed "
+            "importance "
+            "sampling (Vehtari et al. 2024), or, where its k-hat exceeds 0.7, from a fit without the "
+            "participant; standard errors are over participants (Vehtari et al. 2017)."
+        )
+    if refitted.shifts:
+        said.append(
+            "Sensitivity to the priors was checked with half and twice the scale of the prior on abilities, "
+            "fitted again, and on the differences between people, by importance weights without a new fit."
+        )
+    if refitted.effects:
+        said.append(
+            "Abilities were regressed on one metric at a time, standardised over the modes, with a residual "
+            "for each mode, on the normal approximation of what the answers say of the abilities; a slope "
+            "is an "
+            "association."
+        )
+    if refitted.moderation.differences:
+        said.append(
+            "Groups of people were compared by fitting the report's model to each group by itself, with "
+            "the same "
+            "priors and nothing shared."
+        )
+    return " ".join(said)

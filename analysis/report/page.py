@@ -1,5 +1,6 @@
 """``report.html``: one self-contained page, from the template beside it."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isnan
@@ -12,13 +13,16 @@ from analysis.answer_shares import PairShares
 from analysis.figures.labels import one_line, percent
 from analysis.figures.style import Drawing
 from analysis.report.findings import Finding, Phrase
-from analysis.report.methods import Reference
+from analysis.report.methods import Paragraph
+from analysis.report.references import Reference
 from analysis.results import Fit, QuestionFit
-from analysis.stuck import StuckRate
-from analysis.stuck_contrasts import StuckContrast
 
 MOST_ROWS = 400
 """A longer table stays in its CSV file: the page says which."""
+_OPEN_ROWS = 12
+"""A longer table that stands by itself is folded."""
+_SHOWN_DRAWINGS = 2
+"""Of a section with more drawings the others are folded, so that one with many modes stays readable."""
 _PRINTED_ROWS = 40
 _NAMED_IN_A_REASON = 6
 _BELOW_THE_TITLE_PX = 640
@@ -27,7 +31,6 @@ _PLAIN_NAMES = {
     "cut_1": "cut-point 1",
     "cut_2": "cut-point 2",
     "log_nu": "log nu",
-    "log_theta": "log theta",
     "subject_sd": "subject sd",
 }
 
@@ -56,6 +59,17 @@ class Table:
         """True if the page can hold it."""
         return len(self.rows) <= MOST_ROWS
 
+    @property
+    def filled(self) -> "Table":
+        """The same without columns that are empty in every row."""
+        kept = [k for k in range(len(self.columns)) if any(row[k] for row in self.rows)]
+        return Table(
+            tuple(self.columns[k] for k in kept),
+            tuple(self.numeric[k] for k in kept),
+            tuple(tuple(row[k] for k in kept) for row in self.rows),
+            self.source,
+        )
+
 
 @dataclass(frozen=True)
 class Section:
@@ -63,6 +77,7 @@ class Section:
 
     On a screen every table opens below its figure. On paper a short one can stand there (``here``),
     a long one at the end (``appended``), and one whose numbers the figure already prints need not (``no``).
+    A drawing that is there to check something and not to be read can be folded too (``is_folded``).
     """
 
     heading: str
@@ -72,11 +87,40 @@ class Section:
     table: Table | None
     paper: Literal["here", "appended", "no"] = "no"
     words: tuple[str, ...] = ()
+    is_folded: bool = False
+
+    @property
+    def anchor(self) -> str:
+        """What the list of contents points to."""
+        return re.sub(r"[^a-z0-9]+", "-", self.heading.lower()).strip("-")
 
     @property
     def is_open(self) -> bool:
-        """True if the table stands by itself, not behind a figure."""
-        return bool(self.words) and not self.drawings
+        """True if the table stands by itself, not behind a figure, and is short."""
+        alone = bool(self.words) and (self.is_folded or not self.drawings)
+        return alone and self.table is not None and len(self.table.rows) <= _OPEN_ROWS
+
+    @property
+    def shown(self) -> tuple[Drawing, ...]:
+        """The drawings that stand open on the page."""
+        if self.is_folded:
+            return ()
+        return self.drawings if len(self.drawings) <= _SHOWN_DRAWINGS else self.drawings[:1]
+
+    @property
+    def folded(self) -> tuple[Drawing, ...]:
+        """The drawings that open on demand."""
+        return self.drawings[len(self.shown) :]
+
+    @property
+    def captioned(self) -> Drawing:
+        """The drawing that the caption stands below: the last that is open."""
+        return (self.shown or self.folded)[-1]
+
+    @property
+    def folded_title(self) -> str:
+        """What opens them."""
+        return "The figure" if self.is_folded else "The other questions"
 
     @property
     def is_printed(self) -> bool:
@@ -90,8 +134,24 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Part:
+    """Sections about one thing, under a title of their own."""
+
+    title: str
+    sections: tuple[Section, ...]
+
+
+@dataclass(frozen=True)
 class Page:
-    """Everything the template prints."""
+    """Everything the template prints.
+
+    Attributes
+    ----------
+    worth : Section
+        The first figure, which stands before all parts.
+    unanswered : tuple of str
+        Questions of the study that nobody answered, as they are called in a sentence.
+    """
 
     title: str
     subtitle: str
@@ -100,18 +160,24 @@ class Page:
     worth: Section
     findings: tuple[Finding, ...]
     unranked: tuple[QuestionFit, ...]
+    unanswered: tuple[str, ...]
     cautions: tuple[str, ...]
-    sections: tuple[Section, ...]
-    methods: tuple[str, ...]
+    parts: tuple[Part, ...]
+    methods: tuple[Paragraph, ...]
     references: tuple[Reference, ...]
     provenance: tuple[tuple[str, str], ...]
     footer_left: str
     footer_right: str
 
     @property
+    def sections(self) -> tuple[Section, ...]:
+        """All sections in the order of the page, the first figure's first."""
+        return (self.worth, *(section for part in self.parts for section in part.sections))
+
+    @property
     def opens_with_words(self) -> bool:
         """True if the first figure is too tall to stand below the title, and follows the table instead."""
-        return self.worth.drawings[0].height_px > _BELOW_THE_TITLE_PX
+        return not self.worth.drawings or self.worth.drawings[0].height_px > _BELOW_THE_TITLE_PX
 
 
 def render(page: Page) -> str:
@@ -128,7 +194,7 @@ def render(page: Page) -> str:
     loader = environment.loader
     assert loader is not None
     css = loader.get_source(environment, "report.css")[0]
-    drawn = {d.name: Markup(d.svg) for s in (page.worth, *page.sections) for d in s.drawings}
+    drawn = {d.name: Markup(d.svg) for s in page.sections for d in s.drawings}
     return environment.get_template("report.html.j2").render(page=page, css=Markup(css), drawn=drawn)
 
 
@@ -242,56 +308,7 @@ def answers_table(fit: Fit, shares: Sequence[Sequence[PairShares]]) -> Table:
             }[len(cells)]
             rows.append((one_line(question.question.name), one_line(p.mode_i), one_line(p.mode_j), *spread))
     columns = ("Question", "Mode i", "Mode j", "i much", "i", "Same", "j", "j much")
-    return Table(columns, (False, False, False, *([True] * 5)), tuple(rows), "the responses")
-
-
-def stuck_table(rates: Sequence[StuckRate]) -> Table:
-    """Stuck rates with their counts; per minute where the time of exposure is known."""
-    rows = tuple(
-        (
-            one_line(r.mode),
-            f"{r.stuck:,} of {r.comparisons:,}",
-            f"{100 * r.rate_mean:.1f} % ({100 * r.rate_hdi_low:.1f} to {100 * r.rate_hdi_high:.1f})",
-            f"{100 * r.between.mean:.1f} % ({100 * r.between.hdi_low:.1f} to {100 * r.between.hdi_high:.1f})",
-            "" if isnan(r.exposure_min) else f"{r.exposure_min:.1f}",
-            ""
-            if isnan(r.per_minute_mean)
-            else f"{r.per_minute_mean:.2f} ({r.per_minute_hdi_low:.2f} to {r.per_minute_hdi_high:.2f})",
-            ""
-            if r.per_minute_between is None
-            else f"{r.per_minute_between.mean:.2f} ({r.per_minute_between.hdi_low:.2f} to "
-            f"{r.per_minute_between.hdi_high:.2f})",
-        )
-        for r in rates
-    )
-    columns = ("Mode", "Stuck", "Rate", "Over people", "Minutes", "Per minute", "Per minute over people")
-    return Table(columns, (False, *([True] * 6)), rows, "stuck.csv and parameters.csv")
-
-
-def contrasts_section(contrasts: Sequence[StuckContrast]) -> Section | None:
-    """Stuck rates against each other: posterior, and exact tests beside it."""
-    if not contrasts:
-        return None
-    words = (
-        "The chance is posterior. Beside it exact tests of equal rates, two-sided: Fisher's takes "
-        "comparisons as "
-        "independent; the one within people conditions on how often each person got stuck, so that a few "
-        "people "
-        "who are stuck in everything can't make a difference between modes. No correction for several pairs.",
-    )
-    rows = tuple(
-        (
-            one_line(c.mode_i),
-            one_line(c.mode_j),
-            f"{percent(c.p_i_above_j)} %",
-            f"{c.p_fisher:.2g}",
-            f"{c.p_within_people:.2g}",
-        )
-        for c in contrasts
-    )
-    columns = ("Mode i", "Mode j", "i higher", "p, Fisher", "p, within people")
-    table = Table(columns, (False, False, True, True, True), rows, "stuck_contrasts.csv")
-    return Section("Do the stuck rates differ?", (), "", "", table, words=words)
+    return Table(columns, (False, False, False, *([True] * 5)), tuple(rows), "pairwise.csv and strength.csv")
 
 
 def diagnostics_table(fit: Fit) -> Table:

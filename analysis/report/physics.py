@@ -4,7 +4,7 @@ from math import isnan
 
 from analysis.association import FEWEST_MODES, MEASURES, Association
 from analysis.closer_look import CloserLook
-from analysis.covariates import CovariateEffect
+from analysis.covariates import SLOPE_SD, CovariateEffect
 from analysis.figures.association import draw_association
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.figures.style import Drawing
@@ -14,6 +14,8 @@ from analysis.results import Fit
 
 _WORDS = {m.name: m.words for m in MEASURES}
 _MOST_SAID, _MOST_METRICS = 4, 2
+_PRIOR_REACH = 1.88 * SLOPE_SD
+"""94 % of the prior of a slope lies within [logit]."""
 
 
 def physics_section(look: CloserLook, fit: Fit, tag: str, simulated: bool) -> Section | None:
@@ -26,20 +28,19 @@ def physics_section(look: CloserLook, fit: Fit, tag: str, simulated: bool) -> Se
     if simulated:
         words.append(
             "Simulated participants answer by such metrics, as the study file says: here the association "
-            "shows the "
-            "rule they were given, not what people feel."
+            "shows the rule they were given, not what people feel."
         )
     words.append(
         "This is association: the metric lies between the mode and the answer, nobody set it, and other "
-        "things "
-        "that the mode changes go with it."
+        "things that the mode changes go with it. In a comparison, too, a metric differs mostly because the "
+        "two modes do, so that both views rest on the same few modes."
     )
-    if len(fit.modes) < FEWEST_MODES:
-        words.append(
-            f"No model of worth on metrics is fitted: with {len(fit.modes)} modes a line goes through "
-            f"whatever their "
-            f"worths are; it takes {FEWEST_MODES} modes."
-        )
+    words.append(
+        f"No model of worth on metrics is fitted: with {len(fit.modes)} modes a line goes through their "
+        f"worths whatever they are; it takes {FEWEST_MODES} modes."
+        if len(fit.modes) < FEWEST_MODES
+        else "A full report (elbowroom report --full) has a model of worth on each metric too."
+    )
     rows = tuple(
         (
             one_line(a.question),
@@ -57,37 +58,65 @@ def physics_section(look: CloserLook, fit: Fit, tag: str, simulated: bool) -> Se
     if any(q.ranked for q in fit.questions):
         drawings = draw_association(fit.questions, known, look.measures, fit.modes, tag)
     caption = (
-        "Worth (across) and mean metric of the laps (upwards) of each mode, with 94 % intervals both ways: "
-        "posterior of "
-        "the worth, Bayesian bootstrap over participants of the metric. In the numbers: correlation over "
-        "modes, and rank correlation of the answers with the difference of the metric in the same comparison."
+        "Worth (across) and mean metric of the laps (upwards) of each mode, with 94 % credible intervals "
+        "both ways: posterior of the worth, Bayesian bootstrap over participants of the metric. Times a lap "
+        "are of laps that were finished. In the numbers: correlation of ability and metric over the modes, "
+        "and rank correlation of the answers with the difference of the metric in the same comparison."
     )
     return Section("Preference meets physics", drawings, "", caption, table, words=tuple(words))
 
 
-def effects_section(effects: tuple[CovariateEffect, ...]) -> Section | None:
-    """Ability on metrics, where there are modes enough."""
+def effects_section(effects: tuple[CovariateEffect, ...], reason: str, n_modes: int) -> Section:
+    """Ability on metrics, or why there is no such model."""
+    heading = "Worth on metrics"
     if not effects:
-        return None
+        return Section(heading, (), "", "", None, words=(reason,))
     words = (
-        "Ability on one metric at a time (PyMC): logits for one standard deviation more over the modes, "
-        "with 94 % "
-        "interval, and what the metric leaves of the abilities. A slope is an association over these modes.",
+        "Each metric by itself was put into the model: a straight line from the modes' mean metric to their "
+        "abilities, and what the line leaves. A slope is how many logits of ability go with one standard "
+        "deviation more of the metric over the modes.",
+        f"The line has {n_modes} points, one a mode, however many people answered. So the slope is weakly "
+        f"identified: before any answer its 94 % interval was \u2212{_PRIOR_REACH:.1f} to "
+        f"{_PRIOR_REACH:.1f}, and the spread that is left (posterior sd over prior sd: "
+        f"{_narrowed(effects)}) is mostly for want of modes. Metrics that go together over the modes cannot "
+        "be told apart, and the modes' metrics are taken as known.",
+        f"{_slopes_said(effects)} All of this is association: the metric lies between the mode and the "
+        "answer, nobody set it, and whatever else differs between the modes goes with it.",
     )
+    units = {m.name: m.unit for m in MEASURES}
     rows = tuple(
         (
             one_line(e.question),
             _WORDS.get(e.metric, e.metric),
+            f"{e.metric_sd:.3g} {units.get(e.metric, '')}".strip(),
             _interval(e.slope_mean, e.slope_hdi_low, e.slope_hdi_high),
             f"{percent(e.p_positive)} %",
             f"{e.residual_sd:.2f}",
-            "" if e.converged else "did not converge",
         )
         for e in effects
     )
-    columns = ("Question", "Metric", "Slope", "Above 0", "Left over", "Sampling")
-    table = Table(columns, (False, False, True, True, True, False), rows, "covariates.csv")
-    return Section("Worth on metrics", (), "", "", table, words=words)
+    columns = ("Question", "Metric", "One sd is", "Slope [logit]", "Above 0", "Left over [logit]")
+    table = Table(columns, (False, False, True, True, True, True), rows, "covariates.csv")
+    return Section(heading, (), "", "", table, words=words)
+
+
+def _narrowed(effects: tuple[CovariateEffect, ...]) -> str:
+    shares = [e.slope_sd / SLOPE_SD for e in effects]
+    return f"{min(shares):.2f} to {max(shares):.2f}"
+
+
+def _slopes_said(effects: tuple[CovariateEffect, ...]) -> str:
+    clear = [e for e in effects if not e.slope_hdi_low <= 0 <= e.slope_hdi_high]
+    clear = sorted(clear, key=lambda e: -abs(e.slope_mean))
+    if not clear:
+        return f"None of {len(effects):,} slopes is told apart from 0."
+    said = [
+        f"{'more' if e.slope_mean > 0 else 'less'} {_WORDS.get(e.metric, e.metric)} with a higher place on "
+        f"{isolated(e.question)}"
+        for e in clear[:_MOST_SAID]
+    ]
+    more = f" and {len(clear) - _MOST_SAID:,} more" if len(clear) > _MOST_SAID else ""
+    return f"{len(clear):,} of {len(effects):,} slopes are told apart from 0: {'; '.join(said)}{more}."
 
 
 def _said(found: tuple[Association, ...], fit: Fit) -> str:
@@ -108,8 +137,8 @@ def _said(found: tuple[Association, ...], fit: Fit) -> str:
         said.append(f"“{isolated(shorts[question])}” with {listed(metrics)}")
     return (
         f"In single comparisons these went together: {'; '.join(said)}. In brackets stands the rank "
-        f"correlation of the "
-        "answers with the difference between the two methods' laps; the table has its interval."
+        "correlation of the answers with the difference between the two methods' laps; the table has its "
+        "interval."
     )
 
 

@@ -83,8 +83,8 @@ def checks_section(shares: Sequence[CheckShare]) -> Section | None:
     answers, same = sum(s.answers for s in shares), sum(s.same for s in shares)
     words = [
         "In an attention check A and B are one mode, so “about the same” is the answer to expect; small "
-        "differences from lap to lap may be felt nevertheless. "
-        f"{same:,} of {answers:,} answers ({percent(same / answers)} %) said so."
+        f"differences from lap to lap may be felt nevertheless. {same:,} of {answers:,} answers "
+        f"({percent(same / answers)} %) said so."
     ]
     few = [s for s in shares if s.participant and s.share < FEW_SAME]
     if few:

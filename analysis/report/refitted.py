@@ -3,46 +3,62 @@
 from math import isnan
 
 from analysis.figures.labels import isolated, one_line, percent
-from analysis.leaving_out import MOST_FOLDS, SMALL_DIFFERENCE, ModelScore
+from analysis.leaving_out import SMALL_DIFFERENCE, ModelScore
 from analysis.refits import Refits
 from analysis.report.findings import listed
+from analysis.report.moderated import moderation_section
 from analysis.report.page import Section, Table
 from analysis.report.physics import effects_section
 from analysis.report.quality import lag_changes_table
+from analysis.results import Fit
 from analysis.sensitivity import PriorShift
 
 LARGE_SHIFT = 0.05
 """A worth that moves by more is pointed out. Untuned."""
 
 
+def people_sections(found: Refits | None, fit: Fit, tag: str) -> list[Section]:
+    """What a full report tells of groups of people."""
+    return [] if found is None else [moderation_section(found.moderation, fit, tag)]
+
+
+def metric_sections(found: Refits | None, fit: Fit) -> list[Section]:
+    """What a full report tells of worths and metrics."""
+    return [] if found is None else [effects_section(found.effects, found.no_effects, len(fit.modes))]
+
+
 def refit_sections(found: Refits | None) -> list[Section | None]:
-    """All sections of a full report that need refits."""
+    """What a full report tells of models and data beyond the ranking."""
     if found is None:
         return []
-    return [
-        effects_section(found.effects),
-        _scores(found.scores),
-        _shifts(found.shifts),
-        _lag(found),
-    ]
+    return [_scores(found.scores), _shifts(found.shifts), _lag(found)]
 
 
 def _scores(scores: tuple[ModelScore, ...]) -> Section | None:
     if not scores:
         return None
     told = [s for s in scores if s.reading in ("predicts better", "predicts worse")]
+    again = sum(s.refitted for s in scores)
     words = [
-        "Each model is fitted without a participant and scored by the log density of that person's answers "
-        f"(elpd, higher is better); from {MOST_FOLDS + 1} participants on they are left out in {MOST_FOLDS} "
-        f"groups. A difference below {SMALL_DIFFERENCE:g} or below two standard errors tells nothing."
+        "Each model predicts the answers of every participant as if it had not seen them, and is scored by "
+        "the log density that it gave them (elpd, higher is better). Its draws are weighted to leave the "
+        "participant out; "
+        + (
+            f"in {again:,} cases the weights could not be trusted, and the model was fitted again without "
+            "the participant. "
+            if again
+            else "the weights could be trusted throughout, so that nothing had to be fitted without a "
+            "participant. "
+        )
+        + f"A difference below {SMALL_DIFFERENCE:g} or below two standard errors tells nothing."
     ]
     if told:
         said = [f"{isolated(s.question)}: “{s.model}” {s.reading} than the report's model" for s in told]
         words.append(f"{'; '.join(said)}.")
     else:
         words.append(
-            "No model is told apart from the report's: keeping a side effect and people's differences costs "
-            "nothing that these answers could show, and the simpler models predict as well."
+            "No model is told apart from the report's: these answers cannot show that leaving out the side "
+            "effect or people's differences would predict anyone better, or worse."
         )
     if max(s.participants for s in scores) < 20:
         words.append("With so few participants the standard errors are rough themselves.")
@@ -68,20 +84,20 @@ def _shifts(shifts: tuple[PriorShift, ...]) -> Section | None:
     known = [s for s in shifts if not isnan(s.worth_then)]
     large = [s for s in known if abs(s.worth_then - s.worth) > LARGE_SHIFT]
     most = max(known, key=lambda s: abs(s.worth_then - s.worth), default=None)
+    blank = sum(isnan(s.worth_then) for s in shifts)
     words = [
-        "Half and twice the scale of the prior on abilities (fitted again) and on people's differences "
-        "(draws "
-        "reweighted)."
+        "The prior on abilities at half and at twice its scale: the model is fitted again. The prior on how "
+        "much people differ (subject sd) at half and at twice its scale: nothing is fitted again, the "
+        "report's draws are weighted, which tells the shift where it is moderate"
+        + (f"; it could not be told in {blank:,} of {len(shifts):,} rows, left blank." if blank else ".")
     ]
     if most is not None:
         words.append(
             f"The largest shift: {isolated(most.mode)} on {isolated(most.question)}, from {most.worth:.2f} "
-            f"to "
-            f"{most.worth_then:.2f} under {most.prior}. "
+            f"to {most.worth_then:.2f} under {most.prior}. "
             + (
                 f"{len(large):,} of {len(known):,} worths move by more than {LARGE_SHIFT:g}: the answers "
-                f"are few enough "
-                "for the prior to matter."
+                "are few enough for the prior to matter."
                 if large
                 else f"No worth moves by more than {LARGE_SHIFT:g}."
             )
@@ -130,8 +146,8 @@ def _lag(found: Refits) -> Section | None:
         text = f"None of {total:,} comparisons has a guided lap with {excluded.limits.sentence}."
         return Section(heading, (), "", "", None, words=(text,))
     text = (
-        f"{left:,} of {total:,} comparisons have a guided lap with {excluded.limits.sentence}. "
-        "This report keeps them. "
+        f"{left:,} of {total:,} comparisons have a guided lap with {excluded.limits.sentence}. This report "
+        "keeps them. "
     )
     if not excluded.changes:
         return Section(heading, (), "", "", None, words=(text + "Without them nothing would be left.",))

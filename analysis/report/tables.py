@@ -126,7 +126,11 @@ def write_quality(
 
 def write_closer_look(look: CloserLook, contrasts: Sequence[StuckContrast], folder: Path) -> None:
     """Write what goes beyond the ranking, each file if there is anything to write."""
-    people = [(a.question, p) for a in look.agreements for p in a.people]
+    known = [a for a in look.agreements if a.first]
+    if known:
+        header = ["question", "first", "share_mean", "share_hdi_low", "share_hdi_high", "new_person"]
+        write_csv(folder / "agreement.csv", header, ([getattr(a, h) for h in header] for a in known))
+    people = [(a.question, p) for a in known for p in a.people]
     if people:
         header = [field.name for field in fields(people[0][1])]
         rows = ([question, *(getattr(p, h) for h in header)] for question, p in people)
@@ -149,6 +153,7 @@ def write_refits(refitted: Refits, folder: Path) -> None:
         ("models", refitted.scores),
         ("priors", refitted.shifts),
         ("covariates", refitted.effects),
+        ("groups", refitted.moderation.differences),
         ("lag", refitted.lag.changes if refitted.lag is not None else ()),
     ):
         _write_results(folder / f"{name}.csv", found)

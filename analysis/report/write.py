@@ -38,6 +38,7 @@ OWNS = (
     "equivalence.csv",
     "strength.csv",
     "people.csv",
+    "agreement.csv",
     "consistency.csv",
     "predictive.csv",
     "measures.csv",
@@ -46,6 +47,7 @@ OWNS = (
     "models.csv",
     "priors.csv",
     "covariates.csv",
+    "groups.csv",
     "summary.json",
     "posterior.nc",
 )
@@ -148,7 +150,7 @@ def write_report(
         )
         figures = folder / "figures"
         figures.mkdir()
-        for section in (page.worth, *page.sections):
+        for section in page.sections:
             for drawing in section.drawings:
                 drawing.write(figures)
         tell(3, STEPS, "page")

@@ -47,7 +47,7 @@ def report(
         typer.Option(
             "--full",
             help="Add what needs refits: models compared by leaving out participants, other priors, laggy "
-            "comparisons left out, worth on metrics. Takes minutes.",
+            "comparisons left out, worth on metrics, groups of people. Takes a minute or more.",
         ),
     ] = False,
     include_simulated: SimulatedOption = False,

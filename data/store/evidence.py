@@ -8,7 +8,15 @@ from sqlalchemy import Select, func, join, or_, select
 
 from data.errors import InputError
 from data.records import Source
-from data.responses import LagTable, MetricTable, QuestionScale, ResponseTable, StuckTable, rows_sha256
+from data.responses import (
+    BackgroundTable,
+    LagTable,
+    MetricTable,
+    QuestionScale,
+    ResponseTable,
+    StuckTable,
+    rows_sha256,
+)
 from data.store.links import StoredLinks
 from data.store.rows import every
 from data.store.studies import StoredStudy
@@ -41,6 +49,8 @@ STUCK_TYPES = {
 
 LAG_METRICS = ("latency_median_ms", "latency_p95_ms", "frame_rate_hz", "ticks", "skipped_ticks")
 """What a lag table takes of a guided trial's metrics."""
+LAP_TIME = "duration_s"
+"""The metric that a lap which was cut short does not have."""
 
 
 @dataclass(frozen=True)
@@ -213,7 +223,8 @@ class StoredEvidence(StoredLinks):
     def metric_table(self, study: StoredStudy, include_simulated: bool = False) -> MetricTable | None:
         """Objective metrics of the laps behind the answers; None if none has any.
 
-        Attention checks are left out, and trials from before a comparison was begun anew.
+        Attention checks are left out, and trials from before a comparison was begun anew. A lap that ended
+        stuck has no ``duration_s``: it was cut short, and how long it would have taken is unknown.
         """
         sources = self.sources(study, include_simulated)
         query = (
@@ -221,8 +232,8 @@ class StoredEvidence(StoredLinks):
                 comparisons.c.participant,
                 trials.c.comparison,
                 trials.c.mode,
+                trials.c.outcome,
                 trials.c.metrics,
-                participants.c.background,
             )
             .join_from(trials, comparisons)
             .join(participants)
@@ -230,6 +241,7 @@ class StoredEvidence(StoredLinks):
                 participants.c.study == study.id,
                 participants.c.source.in_(sources),
                 trials.c.outcome.in_(["completed", "stuck"]),
+                comparisons.c.answered_at.is_not(None),
                 comparisons.c.check.is_(False),
                 or_(comparisons.c.restarted_at.is_(None), trials.c.started_at >= comparisons.c.restarted_at),
             )
@@ -248,10 +260,31 @@ class StoredEvidence(StoredLinks):
             return None
         keys = ["participant", "comparison", "mode"]
         measured = pd.DataFrame([dict(trial["metrics"]) for trial in known]).astype("float64")
+        if LAP_TIME in measured:
+            measured.loc[[trial["outcome"] == "stuck" for trial in known], LAP_TIME] = math.nan
         named = pd.DataFrame([{key: trial[key] for key in keys} for trial in known])
         rows = pd.concat([named, measured], axis=1).groupby(keys, sort=False, as_index=False).mean()
-        background = {trial["participant"]: dict(trial["background"] or {}) for trial in known}
-        return MetricTable(rows, background)
+        return MetricTable(rows)
+
+    def background_table(self, study: StoredStudy, include_simulated: bool = False) -> BackgroundTable:
+        """What participants said about themselves, in answer to the study's own questions."""
+        sources = self.sources(study, include_simulated)
+        query = (
+            select(participants.c.id, participants.c.background)
+            .where(participants.c.study == study.id, participants.c.source.in_(sources))
+            .order_by(participants.c.source, participants.c.number, participants.c.id)
+        )
+        asked = study.study.background
+        with self.reading() as connection:
+            said = {who["id"]: dict(who["background"] or {}) for who in every(connection, query)}
+        return BackgroundTable(
+            asked,
+            {
+                who: {q.name: answers[q.name] for q in asked if answers.get(q.name)}
+                for who, answers in said.items()
+                if any(answers.get(q.name) for q in asked)
+            },
+        )
 
     def counts(self, study: StoredStudy, include_simulated: bool = False) -> Counts:
         """How far a study has come, among people or with simulated participants as well."""

@@ -139,7 +139,9 @@ def hostile_case() -> Case:
 def many_case() -> Case:
     """Twelve modes, more than there are marker shapes."""
     table = planted_table([f"mode {k:02}" for k in range(12)], STUDY_QUESTIONS[2:], people=2, repetitions=1)
-    return Case(table, fit(table, QUICK))
+    case = Case(table, fit(table))
+    assert case.fit.ranked
+    return case
 
 
 def written(case: Case, folder: Path, **more: object) -> Path:

@@ -67,10 +67,12 @@ def test_the_page_loads_nothing_from_anywhere(study_page):
 
 
 def test_every_drawing_has_words_for_who_cannot_see_it_and_numbers_behind_it(study_page):
-    reader, _ = study_page
+    reader, page = study_page
     assert len(reader.labels) == 10
     assert all(len(label) > 40 for label in reader.labels)
-    assert reader.tags.count("details") == 10
+    assert reader.tags.count("figcaption") == 10
+    folded = re.findall(r"<summary>(.*?)</summary>", page)
+    assert folded == ["The numbers"] * 9 + ["The figure"]
 
 
 def test_every_id_of_the_page_is_given_once(study_page):
@@ -107,11 +109,11 @@ def test_the_page_holds_no_time_of_day_and_no_path(study_page, tmp_path):
 
 
 def test_simulated_answers_are_said_to_be_simulated_wherever_they_are_shown(simulated_report):
-    reader, _ = read(simulated_report)
+    reader, page = read(simulated_report)
     words = reader.words
     assert "do simulated participants prefer?" in words
     assert "These answers were simulated, so they say nothing about people." in words
-    captions = re.findall(r"Figure \d+\. .*?(?=The numbers)", words)
+    captions = re.findall(r"<figcaption>.*?</figcaption>", page)
     assert len(captions) == 10
     assert all("Simulated data." in caption for caption in captions)
     for drawing in (simulated_report / "figures").glob("*.svg"):

@@ -7,8 +7,8 @@ from analysis.report.findings import findings, lead
 from analysis.stuck import stuck_rates
 
 
-def words(case, simulated=False):
-    return "".join(phrase.text for phrase in lead(findings(case.fit), (), simulated))
+def words(case, tag="", unanswered=()):
+    return "".join(phrase.text for phrase in lead(findings(case.fit), (), tag, unanswered))
 
 
 def with_chances(case, chances):
@@ -29,7 +29,8 @@ def test_a_first_place_is_likely_from_eighty_per_cent_on(study_case):
 def test_different_first_places_are_not_made_into_one(study_case):
     said = words(with_chances(study_case, [(0.9, 0.05, 0.05), (0.05, 0.9, 0.05), (0.4, 0.3, 0.3)]))
     assert said.startswith(
-        "No mode comes first on every question. M1 likely ranks first for “most responsive” (90 %)"
+        "No mode comes first on every question. M1 likely ranks first for “most responsive” "
+        "(a chance of 90 %)"
     )
     assert "M2 for “most force” (90 %, which isn't better)" in said
     assert "For “safest” the first place is open" in said
@@ -103,7 +104,7 @@ def test_modes_stuck_in_more_of_fewer_comparisons_are_not_said_to_have_fewer(stu
         replace(rate, mode=f"M{k}", stuck=stuck, comparisons=n)
         for k, (stuck, n) in enumerate([(2, 4), (2, 5), (1, 4), (9, 90)])
     )
-    said = "".join(phrase.text for phrase in lead((), rates, False))
+    said = "".join(phrase.text for phrase in lead((), rates, ""))
     assert said == (
         "The robot got stuck in 2 of 4 comparisons with M0, in 2 of 5 with M1, in 1 of 4 with M2 and "
         "at no higher rate with 1 more mode."
@@ -130,3 +131,36 @@ def test_a_sampler_that_failed_is_not_blamed_on_the_answers(study_case):
         (never[:1], "The answers cannot rank the modes. No. "),
     ):
         assert words(replace(study_case, fit=replace(study_case.fit, questions=questions))) == said
+
+
+def test_a_question_that_nobody_answered_is_not_passed_over(study_case):
+    said = words(with_chances(study_case, [(0.9, 0.05, 0.05)] * 3), unanswered=["safest of all"])
+    assert said.startswith("One mode is likely first on every question that was answered.")
+    assert "Nobody answered “safest of all”." in said
+
+
+def test_answers_that_are_partly_simulated_are_not_said_to_be_all_simulated(study_case):
+    assert words(study_case, "simulated data").startswith("These answers were simulated")
+    assert words(study_case, "partly simulated data").startswith("Some of these answers were simulated")
+
+
+def test_one_participants_answers_are_said_to_be_one_participants(study_case):
+    questions = tuple(replace(q, n_participants=1) for q in study_case.fit.questions)
+    said = words(replace(study_case, fit=replace(study_case.fit, questions=questions)))
+    assert said.startswith("All answers are one participant's: they tell little about other people.")
+
+
+def test_of_many_modes_those_that_may_be_first_are_named(many_case):
+    chances = [(0.5, 0.3, 0.16, *[0.04 / 9] * 9)]
+    said = words(with_chances(many_case, chances))
+    assert "Its closest rival" not in said
+    found = replace(many_case.fit.questions[0], modes=with_chances(many_case, chances).fit.questions[0].modes)
+    twice = replace(many_case.fit, questions=(found, replace(found)))
+    text = "".join(phrase.text for phrase in lead(findings(twice), (), ""))
+    assert "it is mode 00, mode 01 or mode 02 with a chance of 96 %." in text
+
+
+def test_a_robot_that_never_got_stuck_is_said_to_with_the_number_of_comparisons(study_case):
+    rates = tuple(replace(r, stuck=0) for r in stuck_rates(study_case.stuck))
+    said = "".join(phrase.text for phrase in lead((), rates, ""))
+    assert said == "The robot never got stuck, in 24 comparisons with each mode."
