@@ -3,6 +3,9 @@
 import signal
 import socket
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
@@ -18,6 +21,7 @@ _ELSEWHERE = {socket.AF_INET: "198.51.100.1", socket.AF_INET6: "2001:db8::1"}
 _GOODBYE_S = 3
 _MOST_LAP_WORKERS = 4
 _SWITCH_S = 0.0005
+_LONG_S = 5.0
 
 
 def serve(
@@ -63,7 +67,8 @@ def serve(
     # A wrong mode or a maze out of reach is found now, not when a participant waits for a lap.
     public = parse_public_url(public_url) if public_url is not None else None
     opened = open_study(study_source)
-    check_can_be_run(opened.study, str(study_source))
+    with _saying_that_it_takes_long():
+        check_can_be_run(opened.study, str(study_source))
     listener = _listen(host, port)
     with listener, Store.open(store_url) as store:
         set_passphrase(passphrase, store.clock)
@@ -126,6 +131,19 @@ def _run(
     )
     _stop_quietly()
     Server(config).run(sockets=[listener])
+
+
+@contextmanager
+def _saying_that_it_takes_long() -> Iterator[None]:
+    """After some seconds, a line on stderr: a first start compiles the robot, and shows nothing else."""
+    words = "Compiling the robot; the first start on a machine takes about a minute."
+    timer = threading.Timer(_LONG_S, print, (words,), {"file": sys.stderr, "flush": True})
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def _new_link(store: Store, stored: StoredStudy, kind: LinkKind) -> str:

@@ -1,16 +1,18 @@
 """A tiny study on a real server, and requests to it."""
 
+import asyncio
 import http.client
 import json
 import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Coroutine, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import urlsplit
 
 import pytest
@@ -206,3 +208,12 @@ def run_module(page: "Page", module: str, script: str, argument: object = None) 
     return page.evaluate(
         f"async (given) => {{ const m = await import('/stage/{module}.js'); {script} }}", argument
     )
+
+
+Answer = TypeVar("Answer")
+
+
+def run_in_a_loop(coming: Coroutine[None, None, Answer]) -> Answer:
+    """In a thread: where browser tests ran before, this one has an event loop already."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, coming).result()

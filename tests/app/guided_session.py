@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 
-from playwright.sync_api import Locator, Page, TimeoutError, WebSocket, expect, sync_playwright
+from playwright.sync_api import Error, Locator, Page, WebSocket, expect, sync_playwright
 from rich.console import Console
 from rich.table import Table
 
@@ -176,7 +176,7 @@ def lead_on(page: Page, goal: Locator, pictures: Path | None = None) -> None:
     while not goal.is_visible():
         assert time.monotonic() < end, f"{goal} never came"
         # The page may turn at any of these steps.
-        with suppress(TimeoutError):
+        with suppress(Error):
             if go_on.count() == 1 and go_on.is_enabled(timeout=500):
                 title = page.get_by_role("heading").first.inner_text(timeout=500)
                 if title not in seen:

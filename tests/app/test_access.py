@@ -33,7 +33,9 @@ RUN_AXE = """async () => {
     return marked ? ['an exception is shown', ...told] : told;
 }"""
 THREE_COMPARISONS = (GUIDED_STUDY + BACKGROUND).replace("repetitions = 1", "repetitions = 3\nbreak_every = 2")
-CONSOLE_PAGES = ("Overview", "Sessions", "Trials", "Results", "Data", "Study file", "Links")
+CONSOLE_PAGES = (
+    "Overview", "Sessions", "Trials", "Modes", "Results", "Data", "Study file", "Links", "Planning",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -165,6 +165,27 @@ def test_what_participants_of_a_guided_study_go_through_is_shown(capsys: pytest.
     assert "Practice: 1 lap with M1, y 0.35 to -0.5 m" in shown
 
 
+def test_a_mode_that_stands_still_for_good_is_valid_but_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.toml"
+    servo = '[[modes]]\nname = "Servo"\nmethod = "condition_scaling"\n\n[[questions]]'
+    path.write_text(study_text("carmichael2017").replace("[[questions]]", servo, 1))
+    for command in ("check", "show"):
+        assert run(["study", command, str(path)]) == 0
+        shown = " ".join(capsys.readouterr().out.split())
+        assert "mode Servo (condition_scaling) stands still below sigma 0.07" in shown
+        assert shown.count("stands still") == 1, "of the other modes there is nothing to tell"
+
+
+def test_show_says_how_the_modes_behave_and_where_more_of_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["study", "show", "carmichael2017"]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "M3 in 0.988 0.171" in shown
+    assert "M3 out 0.999 0.649" in shown
+    assert "elbowroom study atlas carmichael2017 --out atlas" in shown
+
+
 def without_methods(text: str) -> str:
     return re.sub(r"(?m)^(method|parameters) = .*\n", "", text)
 

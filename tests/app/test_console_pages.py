@@ -75,6 +75,7 @@ def test_the_researcher_s_way_through_all_pages(page: Page, rehearsed: Server) -
     page.on("pageerror", lambda error: errors.append(str(error)))
     check_sessions(page)
     check_trials(page)
+    check_modes(page)
     check_results(page, rehearsed)
     check_study_file(page, rehearsed)
     check_links(page, rehearsed)
@@ -139,6 +140,28 @@ def check_replay(page: Page) -> None:
     page.keyboard.press(" ")
     expect(page.get_by_role("button", name="Play")).to_be_visible()
     check_blind(page)
+    check_headings(page)
+
+
+def check_modes(page: Page) -> None:
+    turn_to(page, "Modes")
+    laps = page.get_by_role("checkbox", name=re.compile("With laps on the maze"))
+    page.get_by_text("With laps on the maze").click()
+    expect(laps).not_to_be_checked(timeout=TIMEOUT_MS)
+    page.get_by_role("button", name="Compare", exact=True).click()
+    # The bar comes in its place, or it is done already.
+    expect(page.get_by_role("button", name="Compare", exact=True)).to_be_hidden(timeout=TIMEOUT_MS)
+    # It goes on while other pages are shown, which still name no mode.
+    turn_to(page, "Sessions")
+    check_blind(page)
+    turn_to(page, "Modes")
+    figure = page.get_by_role("img", name=re.compile("Gain: Zwetschge falls to 0.0"))
+    expect(figure).to_be_visible(timeout=3 * TIMEOUT_MS)
+    assert figure.evaluate("(image) => image.naturalWidth > 0")
+    expect(page.get_by_role("cell", name="Mirabelle").first).to_be_visible()
+    expect(page.get_by_text("No laps were run yet.")).to_be_visible()
+    expect(page.get_by_role("table").filter(has_text="lambda0")).to_contain_text("0.001 to 10")
+    assert page.get_by_role("cell", name="X", exact=True).count() == 0, "a letter beside a mode's name"
     check_headings(page)
 
 

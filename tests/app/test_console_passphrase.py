@@ -1,8 +1,6 @@
 """The console's door with a passphrase."""
 
-import asyncio
-from collections.abc import Coroutine, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from urllib.parse import urlencode
@@ -29,7 +27,7 @@ from data.errors import InputError
 from data.store import Store
 from data.study_file import parse_study
 
-from .conftest import TINY_STUDY
+from .conftest import TINY_STUDY, run_in_a_loop
 
 RIGHT = "seven green apples"
 
@@ -77,13 +75,7 @@ def knock_with(
         "headers": [(b"content-type", kind.encode())],
         "client": (address, 50000),
     }
-    return answer_of(knock(Request(scope, receive)))
-
-
-def answer_of(coming: Coroutine[None, None, Response]) -> Response:
-    """In a thread: where browser tests ran before, this one has an event loop already."""
-    with ThreadPoolExecutor(1) as thread:
-        return thread.submit(asyncio.run, coming).result()
+    return run_in_a_loop(knock(Request(scope, receive)))
 
 
 def actions(desk: Desk) -> list[str]:
@@ -136,7 +128,7 @@ def test_many_addresses_together_are_held_up_as_well(watch: Watch) -> None:
 def test_without_a_passphrase_the_door_stays_closed(desk: Desk, watch: Watch) -> None:
     set_passphrase(None, watch)
     assert knock_with("").status_code == 403
-    assert b"<form" not in bytes(answer_of(show_door(Request({"type": "http", "headers": []}))).body)
+    assert b"<form" not in bytes(run_in_a_loop(show_door(Request({"type": "http", "headers": []}))).body)
     assert actions(desk) == []
 
 

@@ -1,4 +1,4 @@
-"""Checking and locking a study file, planning, and the full fit's process."""
+"""Checking and locking a study file, and the full fit's process."""
 
 import time
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.console.full_fit import FullFit, log_reading
-from app.console.overview import is_locked, planning_sentence
+from app.console.overview import is_locked
 from app.console.study_check import check_study
 from app.server.desk import Desk
 from app.server.laps import LapKeeper
@@ -49,6 +49,17 @@ def test_a_valid_file_is_told_apart_by_what_it_means(desk: Desk) -> None:
     assert other.standing == "another study"
 
 
+def test_a_valid_file_with_a_mode_that_stands_still_for_good_says_so(desk: Desk) -> None:
+    changed = TINY_STUDY.replace('method = "dls"', 'method = "condition_scaling"', 1).replace(
+        "parameters = { lambda0 = 0.2, sigma_t = 0.25 }\n", "", 1
+    )
+    found = check_study(changed.encode(), "a.toml", desk.stored_study)
+    assert found.standing == "next revision"
+    (caution,) = found.cautions
+    assert caution.startswith("mode Zwetschge (condition_scaling) stands still below sigma 0.0")
+    assert check_study(TINY_STUDY.encode(), "a.toml", desk.stored_study).cautions == ()
+
+
 @pytest.mark.parametrize(
     ("old", "new", "why"),
     [
@@ -78,12 +89,6 @@ def test_a_study_is_locked_by_hand_once_and_logged(desk: Desk) -> None:
     desk.store.lock_study(desk.stored_study, "researcher")
     assert is_locked(desk)
     assert [entry.action for entry in desk.store.audit_log()] == ["lock study"]
-
-
-def test_who_plans_is_pointed_to_the_power_of_the_planned_number(desk: Desk) -> None:
-    said = planning_sentence(desk.study, "tiny")
-    assert said.startswith("7 participants are planned.")
-    assert "elbowroom power --study tiny --participants 7,14,28" in said
 
 
 def test_a_fit_without_answers_is_refused_before_a_process_starts(desk: Desk) -> None:

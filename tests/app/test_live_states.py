@@ -23,7 +23,7 @@ from data.store import Store
 from sim_trials.loop import COMPLETED, STUCK, TIMED_OUT
 from sim_trials.trace import LapInputs
 
-from .conftest import GUIDED_STUDY
+from .conftest import GUIDED_STUDY, run_in_a_loop
 from .live_browser import STUDY
 
 NOW = datetime(2026, 1, 1, tzinfo=UTC)
@@ -130,7 +130,7 @@ def play(tmp_path: Path) -> Play:
             with Store.open(tmp_path / "live.sqlite") as store:
                 await plot(Scene(store, RobotPool(1)))
 
-        asyncio.run(main())
+        run_in_a_loop(main())
 
     return run
 

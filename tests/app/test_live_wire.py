@@ -16,6 +16,8 @@ from app.server.live.route import BadMessage, parse_command
 from app.server.live.wire import BadFrame, InputFrame, StateFrame, pack_input, pack_state, unpack_input
 from sim_trials.live import LiveView
 
+from .conftest import run_in_a_loop
+
 GOOD = InputFrame(3, "touch", 7, -1.0, 0.25, 4.0, -8.0, 33.5, 120, 1234.5)
 VIEW = LiveView(
     1.5, -0.5, 0.25, 4.0, -8.0, -0.75, 0.5, 0.625, 0.125, 0.25, (1, 2, 3, 4, 5, 6), True, False, True
@@ -104,7 +106,7 @@ def _sent(connection: Connection, *, takes: int) -> list[str | bytes]:
         await asyncio.wait({task}, timeout=0.05)
         task.cancel()
 
-    asyncio.run(pump())
+    run_in_a_loop(pump())
     return got
 
 

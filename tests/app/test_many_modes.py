@@ -63,8 +63,8 @@ def test_the_atlas_is_one_page_with_every_mode_and_needs_no_other_file(tmp_path:
     page = paths[0].read_text()
     assert all(path.stat().st_size > 1000 for path in paths)
     for name in ("DPI", "JT", "SVD"):
-        assert f"<th>{name}</th>" in page
-        assert f"<h3>{name} " in page
+        assert f"<th scope=row class=words>{name}</th>" in page
+        assert f"<small>{name}</small></h3>" in page
     assert page.count("<svg") == 1
     assert "src=" not in page
     assert "stylesheet" not in page

@@ -8,7 +8,7 @@ import pytest
 from data.study import Mode
 from sim_trials.kinematics import JOINT_SPEED_LIMITS_RAD_S, handle_jacobian
 from sim_trials.modes.method import MEMORY_LENGTH
-from sim_trials.modes.registry import resolve
+from sim_trials.modes.registry import METHODS, resolve
 from sim_trials.singular_value import smallest_singular_value
 
 START = np.array([3.4504, -1.4226, 1.7185, -0.2959, 1.8796, 0.0])
@@ -123,6 +123,19 @@ def test_method_is_its_equation(equation: Equation) -> None:
         np.testing.assert_allclose(
             answer(equation.__name__, q, xdot), equation(q, J, xdot), rtol=1e-7, atol=1e-10
         )
+
+
+@pytest.mark.parametrize("sigma", [0.0, 0.3, 0.9])
+def test_equation_29_of_beaudoin_is_a_damping_once_its_last_sign_is_changed(sigma: float) -> None:
+    """As printed it is negative; with its first sign changed it is -lambda^2 at a singular value of 0."""
+    J, xdot, qdot = np.diag([sigma, 1, 1, 1, 1, 1.0]), np.eye(6)[0].copy(), np.empty(6)
+    mode = resolve(Mode(name="X", method="variable_damping_svd", parameters={"lambda": 0.2, "sigma_t": 1.0}))
+    mode.function(np.zeros(6), J, sigma, xdot, 0.008, mode.packed(), np.zeros(MEMORY_LENGTH), qdot)
+    shape = 3 * sigma**2 - 2 * sigma**3
+    assert -(0.2**2) * shape - 0.2**2 < 0.0
+    last_changed = -(0.2**2) * shape + 0.2**2
+    assert qdot[0] == pytest.approx(sigma / (sigma**2 + last_changed))
+    assert "whose last minus sign is a misprint" in METHODS["variable_damping_svd"].source
 
 
 def test_selective_damping_holds_back_some_directions_and_lets_others_go() -> None:

@@ -1,5 +1,6 @@
 """How a study's mode becomes a method: names, parameters, and a new method by one file."""
 
+import pickle
 import sys
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from data.study_file import read_study
 from sim_trials import modes
 from sim_trials.admittance import COMMAND, TWIST, control_step, initial_state, pack_controller
 from sim_trials.modes import registry
+from sim_trials.modes.method import Method
 from sim_trials.modes.registry import METHODS, method_names, resolve
 
 START = np.array([3.4504, -1.4226, 1.7185, -0.2959, 1.8796, 0.0])
@@ -72,6 +74,13 @@ def test_every_mode_of_the_2017_study_resolves_to_its_parameters() -> None:
     assert resolved["M2"].values == (0.6, 0.25)
     assert resolved["M3"].values == (0.6, 0.2, 0.25, 0.01)
     assert resolved["M1"].method is resolved["M2"].method is METHODS["dls"]
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=lambda method: method.name)
+def test_a_method_goes_to_another_process_by_its_name(method: Method) -> None:
+    sent = pickle.dumps(method)
+    assert len(sent) < 200, "machine code must not travel"
+    assert pickle.loads(sent) is method
 
 
 def test_defaults_fill_what_a_study_leaves_out() -> None:
