@@ -115,6 +115,12 @@ SOURCES = (
         "conditional versus marginal likelihoods. Psychometrika 84(3), 802–829.",
     ),
     Reference(
+        "Papaspiliopoulos et al.",
+        2007,
+        "Papaspiliopoulos, O., Roberts, G. O. and Sköld, M. (2007). A general framework for the "
+        "parametrization of hierarchical models. Statistical Science 22(1), 59–73.",
+    ),
+    Reference(
         "Rao & Kupper",
         1967,
         "Rao, P. V. and Kupper, L. L. (1967). Ties in paired-comparison experiments: a generalization of the "
