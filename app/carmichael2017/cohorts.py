@@ -1,7 +1,8 @@
 """Many simulated studies as large as the published one: how often does what it found come out?
 
 A lap costs a tenth of a second and an answer next to nothing. So a pool of people goes through the study
-once, and each cohort is some of the pool who answer anew: other tastes, other slips.
+once, and each cohort is drawn from the pool with replacement (a bootstrap, so that cohorts differ as much as
+people do); everybody in it answers anew: other tastes, other slips.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -94,7 +95,7 @@ def cohort_table(
     Parameters
     ----------
     pool : sequence of Person
-        Whom each cohort is drawn from, without replacement.
+        Whom each cohort is drawn from, with replacement.
     people : int
         In each cohort.
 
@@ -116,7 +117,7 @@ def cohort_table(
 
 def _cohort(job: _Job) -> pd.DataFrame:
     rng = np.random.default_rng([job.seed, job.number])
-    people = [job.pool[k] for k in rng.choice(len(job.pool), job.people, replace=False)]
+    people = [job.pool[k] for k in rng.choice(len(job.pool), job.people)]
     all_felt = [felt for person in people for felt in person]
     with_mode = {m: [f for f in all_felt if m in (f.mode_a, f.mode_b)] for m in job.study.mode_names}
     rows = []

@@ -57,7 +57,7 @@ class Extent:
     """
 
     people: int = 7
-    pool: int = 21
+    pool: int = 14
     cohorts: int = 100
     swept: int = 10
     edges: tuple[float, ...] = (-1.03, -1.04, -1.045, -1.05, -1.06)
