@@ -35,10 +35,11 @@ def test_every_link_to_a_file_of_ours_leads_somewhere(page: str) -> None:
 
 
 def test_every_picture_is_shown_described_and_small() -> None:
-    shown = dict(re.findall(r"!\[([^\]]*)\]\(\.pictures/([a-z]+\.png)\)", text_of("README.md")))
+    pattern = r"!\[([^\]]*)\]\((?:\.\./)?\.pictures/([a-z0-9-]+\.png)\)"
+    shown = [found for page in PAGES for found in re.findall(pattern, text_of(page))]
     pictures = {picture.name: picture for picture in (ROOT / ".pictures").iterdir()}
-    assert set(shown.values()) == set(pictures)
-    assert all(shown)
+    assert {name for _, name in shown} == set(pictures)
+    assert all(alt for alt, _ in shown)
     for picture in pictures.values():
         assert picture.stat().st_size < LARGEST_PICTURE, picture.name
 
