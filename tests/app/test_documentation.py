@@ -9,7 +9,14 @@ from typer.main import get_command
 from app.cli.main import cli
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "app/README.md", "app/server/README.md"]
+PAGES = [
+    "README.md",
+    "analysis/README.md",
+    "app/README.md",
+    "app/server/README.md",
+    "data/README.md",
+    "sim_trials/README.md",
+]
 LARGEST_PICTURE = 120_000
 """Of a picture [bytes]: the page stays quick."""
 
