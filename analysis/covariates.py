@@ -79,8 +79,10 @@ def covariate_refusal(fit: Fit, metrics: MetricTable | None) -> str:
     if metrics is None:
         return "No metrics of laps stand beside these answers, so there is nothing to set worths on."
     if not _standardised(fit.modes, metrics):
-        return "No metric is known of every mode and differs between modes, so there is nothing to set "
-        "worths on."
+        return (
+            "No metric is known of every mode and differs between modes, so there is nothing to set worths "
+            "on."
+        )
     if not any(q.ranked for q in fit.questions):
         return "No question is ranked, so there are no worths to set on metrics."
     return ""

@@ -122,8 +122,10 @@ def _refusal(table: ResponseTable, fitted: Fit, background: BackgroundTable | No
     if not table.has_participants:
         return "The answers name no participants, so nobody's preference can be set beside what they said."
     if fitted.settings.pooled or fitted.settings.engine == "gibbs":
-        return "Participants are pooled in this report: groups of people are compared only where people "
-        "may differ."
+        return (
+            "Participants are pooled in this report: groups of people are compared only where people may "
+            "differ."
+        )
     if not any(q.ranked for q in fitted.questions):
         return "No question is ranked, so there is no preference to compare."
     return ""

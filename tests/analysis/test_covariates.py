@@ -111,7 +111,9 @@ def test_three_modes_are_refused_in_a_line_and_without_numbers(planted, simulate
 
 def test_without_a_metric_of_every_mode_there_is_no_slope(planted):
     assert covariate_refusal(planted, None).startswith("No metrics of laps")
-    assert covariate_refusal(planted, laps(5)).startswith("No metric is known of every mode")
+    refused = covariate_refusal(planted, laps(5))
+    assert refused.startswith("No metric is known of every mode")
+    assert refused.endswith("nothing to set worths on.")
     assert covariate_refusal(replace(planted, settings=replace(SETTINGS, engine="gibbs")), laps(6)) != ""
 
 

@@ -82,6 +82,7 @@ def test_why_there_are_no_groups_is_said_in_a_line(case):
     ):
         found = moderation(*given)
         assert reason in found.reasons[0]
+        assert found.reasons[0].endswith(".")
         assert reason in moderation_section(found, fitted, "").words[0]
 
 
