@@ -24,6 +24,5 @@ def running_bar(aside: Aside, seen: int = 0) -> None:
     words += f", {step.now}" if step.now else ""
     bar, button = st.columns([0.84, 0.16], vertical_alignment="center")
     bar.progress(min(1.0, step.done / step.total), text=words)
-    if button.button("Cancel", width="stretch"):
-        aside.cancel()
-        st.rerun()
+    # In a callback: the bar is drawn anew every second, and no click may get lost on its way to the button.
+    button.button("Cancel", width="stretch", on_click=aside.cancel)

@@ -9,7 +9,9 @@ import asyncio
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,12 +90,14 @@ class _Guide:
     """One participant: an input sixty times a second, aimed by what the last state shows."""
 
     def __init__(self, address: str, origin: str, cookie: str, study: Study, number: int) -> None:
+        # Loaded before the sockets open: while it loads, nobody answers the server.
+        from sim_trials.scripted_hand import ScriptedHand
+
         self.tally = _Tally()
         self.is_ready = asyncio.Event()
         self._address, self._origin, self._cookie = address, origin, cookie
-        self._study = study
         # People differ: between 7 and 13 cm/s, and they don't move in step.
-        self._pace = 0.07 + 0.06 * (number * 0.618 % 1.0)
+        self._new_hand = partial(ScriptedHand, study, pace_m_s=0.07 + 0.06 * (number * 0.618 % 1.0))
         self._offset_s = number * 0.618 % 1.0 / INPUTS_PER_S
         self._slot = "AB"[number % 2]
         self._view: LiveView | None = None
@@ -105,28 +109,34 @@ class _Guide:
     async def run(self, is_over: asyncio.Event) -> None:
         """Guide the robot until it is over."""
         from websockets.asyncio.client import connect
+        from websockets.exceptions import ConnectionClosed
 
         headers = {"Cookie": f"{PARTICIPANT_COOKIE}={self._cookie}", "Origin": self._origin}
-        async with connect(
-            self._address, additional_headers=headers, compression=None, proxy=None, ping_interval=None
-        ) as socket:
-            await socket.send(f'{{"type":"open","slot":"{self._slot}"}}')
-            tasks = [
-                asyncio.create_task(self._listen(socket)),
-                asyncio.create_task(self._guide(socket)),
-                asyncio.create_task(_until(is_over)),
-            ]
-            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-            for task in tasks:
-                task.cancel()
-            await asyncio.wait(tasks)
+        connecting = connect(
+            self._address,
+            additional_headers=headers,
+            compression=None,
+            proxy=None,
+            open_timeout=_WARM_UP_S,
+            ping_interval=None,
+        )
+        with suppress(ConnectionClosed):
+            async with connecting as socket:
+                await socket.send(f'{{"type":"open","slot":"{self._slot}"}}')
+                tasks = [
+                    asyncio.create_task(self._listen(socket)),
+                    asyncio.create_task(self._guide(socket)),
+                    asyncio.create_task(_until(is_over)),
+                ]
+                await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+                for task in tasks:
+                    task.cancel()
+                await asyncio.wait(tasks)
         if not is_over.is_set():
             raise ElbowroomError("the server closed a participant's socket")
 
     async def _guide(self, socket: "ClientConnection") -> None:
-        from sim_trials.scripted_hand import ScriptedHand
-
-        hand, trial = ScriptedHand(self._study, pace_m_s=self._pace), 0
+        hand, trial = self._new_hand(), 0
         period = 1.0 / INPUTS_PER_S
         due = time.monotonic() + self._offset_s
         while True:
@@ -135,7 +145,7 @@ class _Guide:
             if self._view is None:
                 continue
             if trial != self._trial:
-                hand, trial = ScriptedHand(self._study, pace_m_s=self._pace), self._trial
+                hand, trial = self._new_hand(), self._trial
             aim = hand.aim(self._view, period)
             self._seq += 1
             buttons = wire.ENABLE_BUTTON | (wire.BLAST_BUTTON if aim.blast else 0)

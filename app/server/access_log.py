@@ -1,5 +1,6 @@
 """What the server writes about requests: to stderr, without Streamlit's own traffic and without tokens."""
 
+import asyncio
 import logging
 import re
 from typing import Any
@@ -17,10 +18,13 @@ def masked(path: str) -> str:
 
 
 class Discretion(logging.Filter):
-    """Masks links in uvicorn's access records, and drops the pages' moving parts."""
+    """Masks links in uvicorn's access records; drops the pages' moving parts, and what a stop breaks off."""
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Keep a record only if it tells something."""
+        if record.exc_info and isinstance(record.exc_info[1], asyncio.CancelledError):
+            # A request that was not over long after the server was told to stop: no fault of anything.
+            return False
         if isinstance(record.args, tuple) and len(record.args) == 5:
             client, method, path, version, status = record.args
             if str(path).startswith(_STREAMLIT):

@@ -64,15 +64,15 @@ def serve(
     from app.server.passphrase import set_passphrase
     from app.studies import check_can_be_run, open_study
 
-    # A wrong mode or a maze out of reach is found now, not when a participant waits for a lap.
     public = parse_public_url(public_url) if public_url is not None else None
     opened = open_study(study_source)
-    with _saying_that_it_takes_long():
-        check_can_be_run(opened.study, str(study_source))
-    listener = _listen(host, port)
-    with listener, Store.open(store_url) as store:
-        set_passphrase(passphrase, store.clock)
-        _run(listener, store, store.add_study(opened.study, opened.text), host, workers, public)
+    with _listen(host, port) as listener:
+        # A wrong mode or a maze out of reach is found now, not when a participant waits for a lap.
+        with _saying_that_it_takes_long():
+            check_can_be_run(opened.study, str(study_source))
+        with Store.open(store_url) as store:
+            set_passphrase(passphrase, store.clock)
+            _run(listener, store, store.add_study(opened.study, opened.text), host, workers, public)
 
 
 def _run(

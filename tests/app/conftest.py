@@ -4,12 +4,14 @@ import asyncio
 import http.client
 import json
 import os
+import random
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Callable, Coroutine, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -22,6 +24,7 @@ from app.server.laps import LapKeeper
 from app.server.visitors import PARTICIPANT_COOKIE, admit, new_participant_cookie
 from data.records import Participant
 from data.store import Store
+from tests.conftest import PATIENCE_S
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -127,7 +130,7 @@ class Server:
         body = raw if content is None else json.dumps(content)
         if body is not None:
             sent["Content-Type"] = "application/json"
-        connection = http.client.HTTPConnection(urlsplit(self.base).netloc, timeout=60)
+        connection = http.client.HTTPConnection(urlsplit(self.base).netloc, timeout=PATIENCE_S)
         try:
             connection.request(method, path, body, sent)
             answer = connection.getresponse()
@@ -148,6 +151,14 @@ class Server:
 
 
 Start = Callable[[str], Server]
+
+
+def free_port() -> int:
+    """A port that stays free until it is asked for: the system gives none of these away by itself."""
+    while True:
+        port = random.randrange(20_000, 30_000)
+        with suppress(OSError), socket.create_server(("127.0.0.1", port)):
+            return port
 
 
 @contextmanager
@@ -176,7 +187,11 @@ def serving(folder: Path, study: str, *options: str) -> Iterator[Server]:
             yield Server(said["participant"].strip(), said["researcher"].strip(), store, log, process)
     finally:
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=60)
+        try:
+            process.communicate(timeout=PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            raise
 
 
 @pytest.fixture(scope="session")

@@ -3,7 +3,7 @@
 import struct
 from collections.abc import Sequence
 
-from playwright.sync_api import Page, Request, Response, WebSocket
+from playwright.sync_api import Error, Page, Request, Response, WebSocket
 
 _EVERYTHING = """() => JSON.stringify({
     document: [...document.querySelectorAll('*')].map((e) => e.shadowRoot?.innerHTML ?? '').join('\\n')
@@ -57,7 +57,14 @@ class Ear:
         if response is None or "/static/" in request.url or response.status in (204, 303, 304):
             return
         headers = repr(sorted(response.headers.items())).encode()
-        self.heard.append((request.url, request.url.encode() + headers + response.body()))
+        self.heard.append((request.url, request.url.encode() + headers + self._body(request, response)))
+
+    def _body(self, request: Request, response: Response) -> bytes:
+        try:
+            return response.body()
+        except Error:
+            # Of a page that was left meanwhile the browser keeps nothing: what can be asked for again is.
+            return self._page.request.get(request.url).body() if request.method == "GET" else b""
 
     def _socket(self, socket: WebSocket) -> None:
         def keep(frame: str | bytes) -> None:

@@ -13,65 +13,27 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 
-from playwright.sync_api import Error, Locator, Page, WebSocket, expect, sync_playwright
+from playwright.sync_api import Error, Locator, Page, expect, sync_playwright
 from rich.console import Console
 from rich.table import Table
 
-from app.server.live.wire import StateFrame, unpack_state
-from data.study import Maze, Study
+from data.study import Study
 from data.study_file import parse_study, study_text
 from sim_trials.live import HandInput
 from sim_trials.scripted_hand import ScriptedHand
-from tests.conftest import FLAGS
+from tests.conftest import FLAGS, PATIENCE_S
 
 from .conftest import Server, serving
+from .scene import Hold, Scene
 
-TIMEOUT_MS = 60_000
 STEP_S = 1 / 50
 NOTCH_PX, NOTCH_DEG = 100.0, 6.0
 """A notch of the wheel, and the tilt it asks for (``app/stage/modules/devices/mouse.js``)."""
 WHEEL_EVERY_S = 0.1
 """Sooner than the wanted tilt springs back."""
-
-
-@dataclass
-class Scene:
-    """What a person sees on the screen, read from the frames that the page receives."""
-
-    page: Page
-    maze: Maze
-    state: StateFrame | None = None
-    times_s: dict[int, float] = field(default_factory=dict)
-    """The clock of every trial: how long the robot was in hand in it."""
-
-    def __post_init__(self) -> None:
-        self.page.on("websocket", self._listen)
-
-    def _listen(self, socket: WebSocket) -> None:
-        def keep(frame: str | bytes) -> None:
-            if isinstance(frame, bytes) and frame[0] == 2:
-                self.state = state = unpack_state(frame)
-                self.times_s[state.trial] = state.view.time_s
-
-        if socket.url.endswith("/live"):
-            socket.on("framereceived", keep)
-
-    def at(self, y: float, z: float) -> tuple[float, float]:
-        """Where a point of the wall is on the screen [px] (``app/stage/modules/frame.js``)."""
-        box = self.page.get_by_label("Wall", exact=True).bounding_box()
-        assert box is not None
-        maze = self.maze
-        across = maze.left_y_m - maze.right_y_m + 0.365
-        up = maze.top_z_m - maze.bottom_z_m + 0.165
-        scale = min(box["width"] / across, box["height"] / up)
-        return (
-            box["x"] + box["width"] / 2 - (y - (maze.left_y_m + maze.right_y_m) / 2) * scale,
-            box["y"] + box["height"] / 2 - (z - (maze.top_z_m + maze.bottom_z_m) / 2) * scale,
-        )
 
 
 class MouseHand:
@@ -90,17 +52,17 @@ class MouseHand:
         trial = scene.state.trial
         view = scene.state.view
         mouse.move(*scene.at(view.cursor_y_m, view.cursor_z_m))
-        mouse.down()
+        hold = Hold(scene, mouse.down, mouse.up)
         begun = looked = time.monotonic()
-        is_spraying = False
         while time.monotonic() - begun < seconds and not self._is_over(trial):
+            hold.look()
             now = time.monotonic()
             wanted = self.hand.aim(scene.state.view, max(now - looked, 1e-3))
             looked = now
             mouse.move(*scene.at(wanted.y_m, wanted.z_m))
-            if wanted.blast and not is_spraying:
+            if wanted.blast and not scene.state.view.is_spraying:
+                # A key that is held comes again and again.
                 keyboard.down(" ")
-                is_spraying = True
             self._tilt(wanted, now)
             scene.page.wait_for_timeout(max(0.0, 1000 * (STEP_S - (time.monotonic() - now))))
         over = self._is_over(trial)
@@ -127,14 +89,6 @@ class MouseHand:
         self._lean, self._wheeled = lean, now
 
 
-def wait_for_trial(scene: Scene, after: int) -> None:
-    """Until a trial with a higher number has told its first state."""
-    end = time.monotonic() + TIMEOUT_MS / 1000
-    while scene.state is None or scene.state.trial <= after or scene.state.has_ended:
-        assert time.monotonic() < end, "no trial began"
-        scene.page.wait_for_timeout(20)
-
-
 def picture(page: Page, folder: Path | None, name: str) -> None:
     """Keep how the page looks."""
     if folder is not None:
@@ -146,13 +100,12 @@ def through(page: Page, study: Study, pace_m_s: float, pictures: Path | None) ->
     practice = Scene(page, study.practice_study.maze)
     page.get_by_role("button", name="I agree to take part").click()
     if study.background:
-        expect(page.get_by_role("radiogroup").first).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("radiogroup").first).to_be_visible()
         picture(page, pictures, "background")
     wall = page.get_by_label("Wall", exact=True)
     lead_on(page, wall, pictures)
     if study.has_practice:
-        wait_for_trial(practice, 0)
-        page.wait_for_timeout(300)
+        practice.until_trial(after=0)
         hand = MouseHand(practice, study.practice_study, pace_m_s)
         hand.guide(4.0)
         picture(page, pictures, "practice")
@@ -164,7 +117,7 @@ def through(page: Page, study: Study, pace_m_s: float, pictures: Path | None) ->
         1, 1 + len(study.pairs) * study.protocol.repetitions + study.protocol.attention_checks
     ):
         compare(page, study, pace_m_s, number, pictures)
-    expect(page.get_by_role("heading", name="Thank you")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("heading", name="Thank you")).to_be_visible()
     picture(page, pictures, "thanks")
 
 
@@ -172,7 +125,7 @@ def lead_on(page: Page, goal: Locator, pictures: Path | None = None) -> None:
     """Through the pages that only lead on, until something is there."""
     go_on = page.get_by_role("button", name="Continue")
     seen: set[str] = set()
-    end = time.monotonic() + TIMEOUT_MS / 1000
+    end = time.monotonic() + PATIENCE_S
     while not goal.is_visible():
         assert time.monotonic() < end, f"{goal} never came"
         # The page may turn at any of these steps.
@@ -196,9 +149,9 @@ def compare(page: Page, study: Study, pace_m_s: float, number: int, pictures: Pa
     for slot in ("A", "B"):
         chosen = page.get_by_role("radio", name=f"Method {slot}", exact=True)
         if not chosen.is_checked():
-            done = scene.state.trial if scene.state else 0
+            done = scene.trial
             chosen.check()
-        wait_for_trial(scene, done)
+        scene.until_trial(after=done)
         lap = MouseHand(scene, study, pace_m_s)
         lap.guide(15.0)
         picture(page, pictures, f"guide_{number}{slot}")
@@ -209,11 +162,12 @@ def compare(page: Page, study: Study, pace_m_s: float, number: int, pictures: Pa
         picture(page, pictures, f"end_{number}{slot}")
         while (missing := study.protocol.minimum_exposure_s + 1 - exposure(scene, done)) > 0:
             assert scene.state is not None
-            wait_for_trial(scene, scene.state.trial if scene.state.has_ended else 0)
+            scene.until_trial(after=scene.trial if scene.state.has_ended else 0)
             MouseHand(scene, study, pace_m_s).guide(missing)
-    expect(answer).to_have_attribute("aria-disabled", "false", timeout=TIMEOUT_MS)
+    expect(answer).to_have_attribute("aria-disabled", "false")
     answer.click()
-    expect(page.get_by_role("button", name="Submit answers")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("button", name="Submit answers")).to_be_visible()
+    expect(page.get_by_label("Wall", exact=True)).to_have_count(0)
     for k, group in enumerate(page.get_by_role("radiogroup").all()):
         options = group.get_by_role("radio")
         options.nth((number + k) % options.count()).check()
@@ -288,7 +242,8 @@ def main() -> None:
     with serving(chosen.out, text) as server, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(FLAGS))
         page = browser.new_page(viewport={"width": width, "height": height})
-        page.set_default_timeout(TIMEOUT_MS)
+        page.set_default_timeout(1000 * PATIENCE_S)
+        expect.set_options(timeout=1000 * PATIENCE_S)
         page.goto(server.participant_url)
         picture(page, pictures, "consent")
         through(page, study, chosen.pace, pictures)

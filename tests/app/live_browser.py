@@ -14,6 +14,7 @@ from app.server.visitors import PARTICIPANT_COOKIE
 from data.study import Study
 from data.study_file import parse_study
 from sim_trials.scripted_hand import ScriptedHand
+from tests.conftest import PATIENCE_S
 
 from .conftest import GUIDED_STUDY, Server
 
@@ -58,6 +59,10 @@ class LiveBrowser:
             origin=server.base if origin is None else origin,  # type: ignore[arg-type]
             compression=None,
             proxy=None,
+            open_timeout=PATIENCE_S,
+            ping_interval=None,
+            # A window that isn't read for a while must answer the server's pings all the same.
+            max_queue=None,
             max_size=1 << 20,
         )
         self.socket: ClientConnection
@@ -68,7 +73,6 @@ class LiveBrowser:
         self.trial = 0
         self.seq = 0
         self.close_code: int | None = None
-        self._born = time.monotonic()
 
     def __enter__(self) -> Self:
         self.socket = self._connecting.__enter__()
@@ -83,9 +87,9 @@ class LiveBrowser:
         self.socket.send(json.dumps({"type": kind, **more}))
 
     def hold(self, y: float, z: float, buttons: int = 3, **changes: object) -> None:
-        """Send one input."""
+        """Send one input; by the page's own clock they come at an even pace."""
         self.seq += 1
-        clock = (time.monotonic() - self._born) * 1000
+        clock = 1000 * PERIOD_S * self.seq
         fields: dict[str, Any] = {
             "buttons": buttons, "device": "mouse", "seq": self.seq, "hand_y_m": y, "hand_z_m": z,
             "tilt_y_deg": 0.0, "tilt_z_deg": 0.0, "latency_ms": 20.0, "frames": self.seq, "client_ms": clock,
@@ -125,39 +129,84 @@ class LiveBrowser:
             found[first * 16 : first * 16 + len(points)] = points
         return bytes(found)
 
-    def until(self, kind: str, seconds: float = 20.0) -> dict[str, Any]:
-        """Wait for a message of a type that was not seen before this call."""
-        seen, end = len(self.told), time.monotonic() + seconds
-        while time.monotonic() < end and self.close_code is None:
-            self.read(end - time.monotonic())
+    def until(self, kind: str, *, since: int | None = None) -> dict[str, Any]:
+        """Wait for a message of a type.
+
+        Parameters
+        ----------
+        since : int, optional
+            Only what came after so many messages (`told`) counts; by default what comes after this call.
+        """
+        seen, end = len(self.told) if since is None else since, time.monotonic() + PATIENCE_S
+        while True:
             for said in self.told[seen:]:
                 if said["type"] == kind:
                     return said
-        raise AssertionError(f"no {kind!r} came; told {self.told[-5:]}, closed {self.close_code}")
+            if time.monotonic() > end or self.close_code is not None:
+                raise AssertionError(f"no {kind!r} came; told {self.told[-5:]}, closed {self.close_code}")
+            self.read(end - time.monotonic())
 
-    def until_closed(self, seconds: float = 10.0) -> int | None:
-        end = time.monotonic() + seconds
+    def until_closed(self) -> int | None:
+        end = time.monotonic() + PATIENCE_S
         while time.monotonic() < end and self.close_code is None:
             self.read(end - time.monotonic())
         return self.close_code
 
+    def until_seen(self, is_so: Callable[[StateFrame], bool]) -> StateFrame:
+        """Look on until a state is so."""
+        end = time.monotonic() + PATIENCE_S
+        while self.state is None or not is_so(self.state):
+            assert time.monotonic() < end, f"last seen: {self.state}"
+            assert self.close_code is None, f"closed with {self.close_code}"
+            self.read(1.0)
+        return self.state
+
     def open(self, slot: str) -> dict[str, Any]:
         """Turn to a slot; a server that has just started compiles before a trial begins."""
         self.tell("open", slot=slot)
-        return self.until("trial", 90.0)
+        return self.until("trial")
 
     def wait_for_the_robot(self) -> None:
         """Until the first state comes."""
-        end = time.monotonic() + 90.0
-        while self.state is None and time.monotonic() < end:
-            self.read(1.0)
-        assert self.state is not None
+        self.until_seen(lambda _: True)
 
-    def guide(self, seconds: float, aim: Aim = to_the_right, buttons: int = 3, until: str = "") -> None:
-        """Hold the robot for a while, or until a message of a type comes."""
-        seen, end = len(self.told), time.monotonic() + seconds
+    def press(self, seconds: float, aim: Aim = to_the_right, buttons: int = 3) -> None:
+        """Send inputs for a while, whatever comes of it."""
+        end = time.monotonic() + seconds
+        self._send_until(lambda: time.monotonic() >= end, aim, buttons)
+
+    def guide(self, seconds: float, aim: Aim = to_the_right) -> None:
+        """Hold the robot until its clock has gone on for so long: a loaded machine holds it up."""
+        passed, last = 0.0, self.state
+
+        def is_over() -> bool:
+            nonlocal passed, last
+            before, last = last, self.state
+            if before is not None and last is not None and before.trial == last.trial:
+                passed += last.view.time_s - before.view.time_s if last.view.is_enabled else 0.0
+            return passed >= seconds and last is not None and last.view.is_enabled
+
+        self.guide_until(is_over, aim)
+
+    def guide_until(self, is_over: Callable[[], bool], aim: Aim = to_the_right) -> None:
+        """Hold the robot until something is so."""
+        end = time.monotonic() + PATIENCE_S
+
+        def is_enough() -> bool:
+            assert time.monotonic() < end, f"last seen: {self.state}, told {self.told[-5:]}"
+            return is_over()
+
+        self._send_until(is_enough, aim, buttons=3)
+
+    def guide_to_the_end(self, aim: Aim) -> dict[str, Any]:
+        """Hold the robot until the lap has ended: how it did."""
+        seen = len(self.told)
+        self.guide_until(lambda: any(said["type"] == "ended" for said in self.told[seen:]), aim)
+        return self.until("ended", since=seen)
+
+    def _send_until(self, is_over: Callable[[], bool], aim: Aim, buttons: int) -> None:
         due = time.monotonic()
-        while due < end and not any(said["type"] == until for said in self.told[seen:]):
+        while not is_over():
             self.hold(*aim(self.state), buttons)
             due = max(due + PERIOD_S, time.monotonic())
             while self.read(due - time.monotonic()) or time.monotonic() < due:

@@ -1,7 +1,11 @@
 """The processes that a server has started (Linux)."""
 
+import time
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
+
+from tests.conftest import PATIENCE_S
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,14 @@ def children(parent: int) -> list[Process]:
 def is_running(process: Process) -> bool:
     """Whether it still is there; who is dead and was not asked for is not."""
     return any(found.pid == process.pid and found.started == process.started for found, _ in _all())
+
+
+def until_gone(processes: Collection[Process]) -> None:
+    """Wait until none of them is there."""
+    end = time.monotonic() + PATIENCE_S
+    while any(map(is_running, processes)) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not any(map(is_running, processes))
 
 
 def _all() -> list[tuple[Process, int]]:

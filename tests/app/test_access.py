@@ -16,13 +16,13 @@ from data.records import Comparison, Device, Slot, Trial
 from data.store import token_sha256
 
 from .conftest import BACKGROUND, GUIDED_STUDY, Server, serving
+from .drawn import until_drawn
 from .test_external_runs import LAB_STUDY
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, ColorScheme
 
 pytestmark = pytest.mark.browser
-TIMEOUT_MS = 60_000
 SIZE = {"width": 1280, "height": 800}
 AXE = Path(axe_playwright_python.__file__).with_name("axe.min.js").read_text(encoding="utf-8")
 RUN_AXE = """async () => {
@@ -73,7 +73,6 @@ class Visit:
     ) -> None:
         self.server, self.device = server, device
         self.context = chromium.new_context(viewport=size, color_scheme=scheme)  # type: ignore[arg-type]
-        self.context.set_default_timeout(TIMEOUT_MS)
         self.page = self.context.new_page()
         self.who = ""
 
@@ -86,10 +85,10 @@ class Visit:
         """Open a page of the server, and wait until it shows a heading, the wall if there is to be one."""
         self.page.goto(self.server.base + address)
         if sees is None:
-            expect(self.page.get_by_label("Wall", exact=True)).to_be_visible(timeout=TIMEOUT_MS)
+            expect(self.page.get_by_label("Wall", exact=True)).to_be_visible()
         else:
-            expect(self.page.get_by_role("heading", name=sees).first).to_be_visible(timeout=TIMEOUT_MS)
-        self.page.wait_for_timeout(500)
+            expect(self.page.get_by_role("heading", name=sees).first).to_be_visible()
+        until_drawn(self.page)
         return self.page
 
     def comparison(self, position: int) -> Comparison:
@@ -129,13 +128,15 @@ def participants_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
     store, now = visit.server.store, visit.server.store.clock
     yield "no link", visit.looks_at("/", "Please open your link")
     visit.page.goto(visit.server.participant_url)
-    expect(visit.page.get_by_role("button", name="I agree")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(visit.page.get_by_role("button", name="I agree")).to_be_visible()
+    until_drawn(visit.page)
     yield "consent", visit.page
     visit.join()
     page = visit.looks_at("/", "A few questions about you")
     page.get_by_label("How old are you?").fill("7")
     page.get_by_role("button", name="Continue").click()
     expect(page.get_by_text("from 18 to 99")).to_be_visible()
+    until_drawn(page)
     yield "background", page
     store.record_background(visit.who, {"years": "33"}, now())
     yield "instructions", visit.looks_at("/", "What you will do")
@@ -180,7 +181,7 @@ def says_stuck(visit: Visit) -> Page:
 
     visit.page.route_web_socket("**/live", listen)
     page = visit.looks_at("/")
-    expect(page.get_by_role("heading", name="The robot is stuck")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("heading", name="The robot is stuck")).to_be_visible()
     return page
 
 
@@ -191,9 +192,9 @@ def researchers_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
     visit.page.keyboard.press("Enter")
     for name in CONSOLE_PAGES:
         visit.page.get_by_role("link", name=name, exact=True).click()
-        if name != "Overview":
-            expect(visit.page.get_by_role("heading", name=name, level=1)).to_be_visible(timeout=TIMEOUT_MS)
-        visit.page.wait_for_timeout(1500)
+        title = "Zweifelhaft" if name == "Overview" else name
+        expect(visit.page.get_by_role("heading", name=title, level=1)).to_be_visible()
+        until_drawn(visit.page)
         yield name, visit.page
 
 
@@ -207,8 +208,8 @@ def lab_pages(visit: Visit) -> Iterator[tuple[str, Page]]:
     store.create_link("researcher", store.studies()[0], token_sha256(token))
     visit.page.goto(f"{visit.server.base}/researcher/{token}")
     visit.page.get_by_role("link", name="Operator").click()
-    expect(visit.page.get_by_role("heading", name="as method A")).to_be_visible(timeout=TIMEOUT_MS)
-    visit.page.wait_for_timeout(500)
+    expect(visit.page.get_by_role("heading", name="as method A")).to_be_visible()
+    until_drawn(visit.page)
     yield "operator", visit.page
 
 
@@ -226,8 +227,11 @@ def broken_rules(pages: Iterator[tuple[str, Page]]) -> dict[str, list[str]]:
     found = {}
     for name, page in pages:
         page.evaluate(AXE)
-        if broken := page.evaluate(RUN_AXE):
-            found[name] = broken
+        if page.evaluate(RUN_AXE):
+            # What was just fading, or drawn anew, isn't broken a moment later.
+            until_drawn(page)
+            if broken := page.evaluate(RUN_AXE):
+                found[name] = broken
     return found
 
 

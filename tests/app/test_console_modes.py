@@ -19,6 +19,7 @@ from sim_trials.loop import COMPLETED, STUCK
 from sim_trials.mode_atlas import mode_curves
 from sim_trials.mode_laps import LapOfMode, ModeLaps
 from sim_trials.modes.registry import METHODS
+from tests.conftest import PATIENCE_S
 
 from .conftest import GUIDED_STUDY, SECRETS, TINY_STUDY, Server
 from .ear import Ear
@@ -27,9 +28,6 @@ from .test_external_runs import LAB_STUDY
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-LONGEST_WAIT_S = 300
-TIMEOUT_MS = 60_000
-
 
 @pytest.fixture
 def study() -> Study:
@@ -37,7 +35,7 @@ def study() -> Study:
 
 
 def wait_for(bench: ModeBench) -> None:
-    deadline = time.monotonic() + LONGEST_WAIT_S
+    deadline = time.monotonic() + 3 * PATIENCE_S
     while bench.state == "running" and time.monotonic() < deadline:
         time.sleep(0.05)
 
@@ -97,7 +95,7 @@ def test_a_comparison_can_be_cancelled(study: Study) -> None:
     process = bench._process
     bench.cancel()
     assert process is not None
-    process.join(LONGEST_WAIT_S)
+    process.join(PATIENCE_S)
     assert (bench.state, process.is_alive()) == ("cancelled", False)
     assert bench.missing(study, ("Mirabelle",)) == ("Mirabelle",)
 
@@ -157,7 +155,7 @@ def test_a_participant_who_asks_for_the_page_hears_of_no_mode(chromium: "Browser
     page = context.new_page()
     ear = Ear(page, SECRETS)
     page.goto(f"{server.base}/modes")
-    expect(page.get_by_role("heading", name="Please open your link")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("heading", name="Please open your link")).to_be_visible()
     ear.look()
     context.close()
     assert ear.secrets_heard() == []

@@ -15,10 +15,9 @@ from app.server.visitors import admit, new_token
 from data.errors import InputError
 from data.store import Store, token_sha256
 from data.study_file import parse_study
+from tests.conftest import PATIENCE_S
 
 from .conftest import TINY_STUDY
-
-LONGEST_WAIT_S = 60
 
 
 @pytest.fixture
@@ -109,7 +108,7 @@ def test_one_fit_at_a_time_which_can_be_cancelled(desk: Desk) -> None:
     process = fit._process
     assert process is not None
     fit.cancel()
-    process.join(LONGEST_WAIT_S)
+    process.join(PATIENCE_S)
     assert not process.is_alive()
     assert (fit.state, fit.report) == ("cancelled", None)
 
@@ -120,7 +119,7 @@ def test_a_fit_whose_process_is_killed_says_so(desk: Desk) -> None:
     fit.start(desk, include_simulated=False)
     assert fit._process is not None
     fit._process.kill()
-    deadline = time.monotonic() + LONGEST_WAIT_S
+    deadline = time.monotonic() + PATIENCE_S
     while fit.state == "running" and time.monotonic() < deadline:
         time.sleep(0.05)
     assert (fit.state, fit.trouble) == ("failed", "the process that fitted was ended from outside")

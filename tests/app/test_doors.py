@@ -1,14 +1,17 @@
 """Who gets in: links, cookies, origins."""
 
+import asyncio
 import http.client
+import logging
 from urllib.parse import urlsplit
 
 import pytest
 
-from app.server.access_log import masked
+from app.server.access_log import Discretion, masked
 from app.server.desk import Desk
 from app.server.laps import LapKeeper
 from app.server.visitors import RESEARCHER_COOKIE, is_researcher, visitor
+from tests.conftest import PATIENCE_S
 
 from .conftest import Server
 
@@ -92,7 +95,7 @@ def test_a_write_from_another_origin_is_refused(server: Server, path: str, origi
 
 @pytest.mark.parametrize(("origin", "status"), [("http://evil.example", 403), ("own", 101)])
 def test_streamlit_s_socket_opens_for_our_own_pages_alone(server: Server, origin: str, status: int) -> None:
-    connection = http.client.HTTPConnection(urlsplit(server.base).netloc, timeout=60)
+    connection = http.client.HTTPConnection(urlsplit(server.base).netloc, timeout=PATIENCE_S)
     headers = {
         "Connection": "Upgrade",
         "Upgrade": "websocket",
@@ -123,3 +126,10 @@ def test_the_log_masks_tokens(server: Server) -> None:
     assert "/join/***" in log
     assert token not in log
     assert masked("/researcher/abc?x=1") == "/researcher/***?x=1"
+
+
+@pytest.mark.parametrize(("error", "is_told"), [(asyncio.CancelledError(), False), (KeyError("x"), True)])
+def test_what_is_broken_off_when_the_server_stops_is_no_fault(error: BaseException, is_told: bool) -> None:
+    failed = (type(error), error, None)
+    record = logging.LogRecord("uvicorn.error", logging.ERROR, __file__, 1, "failed", (), failed)
+    assert Discretion().filter(record) is is_told

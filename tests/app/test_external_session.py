@@ -13,7 +13,6 @@ from data.store import Store
 from .conftest import Server, serving
 from .ear import Ear
 from .test_external_runs import LAB_STUDY
-from .test_walk import TIMEOUT_MS, open_page
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -25,18 +24,16 @@ SECRETS = ("Zwetschge", "Mirabelle", "Quitte", "Holler", "Zweifelhaft", "lambda"
 def test_a_session_in_the_lab_ends_in_a_report_with_stuck_rates(chromium: "Browser", tmp_path: Path) -> None:
     with serving(tmp_path, LAB_STUDY) as server:
         researcher, participant = chromium.new_context(), chromium.new_context()
-        operator, page = open_page(researcher), open_page(participant)
+        operator, page = researcher.new_page(), participant.new_page()
         ear = Ear(page, SECRETS)
         operator.goto(server.researcher_url)
         operator.get_by_role("link", name="Operator").click()
-        expect(operator.get_by_role("heading", name="Nobody is in a session")).to_be_visible(
-            timeout=TIMEOUT_MS
-        )
+        expect(operator.get_by_role("heading", name="Nobody is in a session")).to_be_visible()
 
         page.goto(server.participant_url)
         page.get_by_role("button", name="I agree to take part").click()
         page.get_by_role("button", name="Continue").click()
-        expect(page.get_by_role("heading", name="Comparison 1 of 1")).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("heading", name="Comparison 1 of 1")).to_be_visible()
         expect(page.get_by_role("radio", name="Method A", exact=True)).to_be_checked()
         says(page, "The operator is preparing method A")
         run_one(operator, page, "A", "Stuck")
@@ -53,27 +50,25 @@ def test_a_session_in_the_lab_ends_in_a_report_with_stuck_rates(chromium: "Brows
         begin(operator, page, "B")
         page.reload()
         says(page, "You are guiding with method B")
-        second_window = open_page(researcher)
+        second_window = researcher.new_page()
         second_window.goto(f"{server.base}/operator")
         expect(
             second_window.get_by_role("heading", name=re.compile("Running: .* as method B"))
-        ).to_be_visible(timeout=TIMEOUT_MS)
+        ).to_be_visible()
         ear.look()
-        expect(page.get_by_text("You can answer")).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_text("You can answer")).to_be_visible()
         answer.click()
         page.get_by_role("radiogroup", name="Which method felt safest to use?").get_by_role(
             "radio"
         ).first.check()
         page.get_by_role("button", name="Submit answers").click()
-        expect(page.get_by_role("heading", name="Thank you")).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("heading", name="Thank you")).to_be_visible()
         ear.look()
         page.goto(f"{server.base}/operator")
-        expect(page.get_by_role("heading", name="Please open your link")).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("heading", name="Please open your link")).to_be_visible()
         ear.look()
         for window in (operator, second_window):
-            expect(window.get_by_role("heading", name="Nobody is in a session")).to_be_visible(
-                timeout=TIMEOUT_MS
-            )
+            expect(window.get_by_role("heading", name="Nobody is in a session")).to_be_visible()
         assert ear.secrets_heard() == []
         assert ear.errors == []
         check_store(server)
@@ -86,7 +81,7 @@ def test_a_session_in_the_lab_ends_in_a_report_with_stuck_rates(chromium: "Brows
 
 def begin(operator: Page, page: Page, slot: str) -> None:
     """The operator loads what is wanted and starts the run; the participant sees both."""
-    expect(operator.get_by_role("heading", name=f"method {slot}")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(operator.get_by_role("heading", name=f"method {slot}")).to_be_visible()
     operator.get_by_role("button", name="Loaded").click()
     says(page, f"Method {slot} is ready")
     operator.get_by_role("button", name="Start").click()
@@ -96,13 +91,13 @@ def begin(operator: Page, page: Page, slot: str) -> None:
 def run_one(operator: Page, page: Page, slot: str, ending: str) -> None:
     if operator.get_by_role("button", name="Loaded").is_enabled():
         begin(operator, page, slot)
-    expect(operator.get_by_label("time of this run")).to_have_text(re.compile("[1-9]$"), timeout=TIMEOUT_MS)
+    expect(operator.get_by_label("time of this run")).to_have_text(re.compile("[1-9]$"))
     operator.get_by_role("button", name=ending).click()
-    expect(operator.get_by_role("cell", name=ending, exact=True).first).to_be_visible(timeout=TIMEOUT_MS)
+    expect(operator.get_by_role("cell", name=ending, exact=True).first).to_be_visible()
 
 
 def says(page: Page, text: str) -> None:
-    expect(page.get_by_role("heading", name=text)).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("heading", name=text)).to_be_visible()
 
 
 def check_store(server: Server) -> None:

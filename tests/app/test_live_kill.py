@@ -2,20 +2,18 @@
 
 import os
 import signal
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
-from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import expect
 
-from app.server.live.worker import PROCESS_NAME
+from app.server.live.worker import PROCESS_NAME, TICK_S
 
-from .conftest import GUIDED_STUDY, Server, serving
-from .processes import Process, children, is_running
-from .test_guiding import TIMEOUT_MS, Guide, by_mouse, guiding
+from .conftest import GUIDED_STUDY, Server, free_port, serving
+from .guide_page import HELD_S, by_mouse, guiding
+from .processes import Process, children, until_gone
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -40,33 +38,6 @@ def lap_worker(server: Server) -> Process:
     return found
 
 
-def until_trials(guide: Guide, count: int) -> None:
-    """Wait until so many are stored; a new process has to load everything first."""
-    end = time.monotonic() + 90
-    while len(guide.trials) < count and time.monotonic() < end:
-        guide.page.wait_for_timeout(20)
-    assert len(guide.trials) == count
-
-
-def take_the_nozzle(guide: Guide) -> None:
-    guide.page.mouse.move(*guide.at(0.05))
-    guide.page.mouse.down()
-    guide.says("Robot moves")
-    guide.page.mouse.move(*guide.at(0.1))
-    guide.page.wait_for_timeout(300)
-
-
-def answer_to_the_end(guide: Guide) -> None:
-    page = guide.page
-    page.get_by_role("button", name="Answer the questions").click()
-    submit = page.get_by_role("button", name="Submit answers")
-    expect(submit).to_be_visible(timeout=TIMEOUT_MS)
-    for group in page.get_by_role("radiogroup").all():
-        group.get_by_role("radio").first.check()
-    submit.click()
-    expect(page.get_by_role("heading", name="Thank you")).to_be_visible(timeout=TIMEOUT_MS)
-
-
 @pytest.fixture(scope="module")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server whose workers may be killed."""
@@ -77,14 +48,15 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 def test_after_a_kill_of_the_server_the_same_page_goes_on_with_what_was_acknowledged(
     chromium: "Browser", tmp_path: Path
 ) -> None:
-    with serving(tmp_path, GUIDED_STUDY) as killed, guiding(chromium, killed, "mouse") as guide:
+    port = ("--port", str(free_port()))
+    with serving(tmp_path, GUIDED_STUDY, *port) as killed, guiding(chromium, killed, "mouse") as guide:
         page = guide.page
         page.evaluate("window.isTheSamePage = true")
         by_mouse(guide)
         guide.turn_to("B")
-        until_trials(guide, 1)
+        guide.until_trials(1)
         acknowledged = guide.trials
-        take_the_nozzle(guide)
+        guide.hold_with_the_mouse().keep(HELD_S)
         processes = children(killed.process.pid)
         assert {PROCESS_NAME} < {process.name for process in processes}
         killed.process.kill()
@@ -92,16 +64,13 @@ def test_after_a_kill_of_the_server_the_same_page_goes_on_with_what_was_acknowle
         guide.says(OFFLINE)
         guide.says("Robot waits")
         page.mouse.up()
-        end = time.monotonic() + 30
-        while any(map(is_running, processes)) and time.monotonic() < end:
-            time.sleep(0.05)
-        assert not any(map(is_running, processes))
+        until_gone(processes)
         assert guide.trials == acknowledged
-        with serving(tmp_path, GUIDED_STUDY, "--port", str(urlsplit(killed.base).port)):
-            expect(page.get_by_text(OFFLINE, exact=True).first).to_be_hidden(timeout=TIMEOUT_MS)
+        with serving(tmp_path, GUIDED_STUDY, *port):
+            expect(page.get_by_text(OFFLINE, exact=True).first).to_be_hidden()
             guide.is_ready("B")
             by_mouse(guide)
-            answer_to_the_end(guide)
+            guide.answer_to_the_end()
             assert page.evaluate("window.isTheSamePage")
             assert guide.comparison.answered_at is not None
             kept, after = guide.trials
@@ -116,19 +85,19 @@ def test_after_a_kill_of_the_robot_s_process_the_page_says_so_and_goes_on(
     chromium: "Browser", running: Server
 ) -> None:
     with guiding(chromium, running, "mouse") as guide:
-        take_the_nozzle(guide)
+        guide.hold_with_the_mouse().keep(HELD_S)
         os.kill(live_worker(running).pid, signal.SIGKILL)
         guide.says("The robot has stopped and is being reset")
         guide.page.mouse.up()
-        until_trials(guide, 1)
+        guide.until_trials(1)
         guide.is_ready("A")
         by_mouse(guide)
         guide.turn_to("B")
         by_mouse(guide)
-        answer_to_the_end(guide)
+        guide.answer_to_the_end()
         found = [(trial.slot, trial.number, trial.outcome) for trial in guide.trials]
         assert found == [("A", 1, "failed"), ("A", 2, "abandoned"), ("B", 1, "abandoned")]
-        assert all(trial.duration_s > 0.3 for trial in guide.trials)
+        assert all(trial.duration_s >= HELD_S - TICK_S for trial in guide.trials)
 
 
 def test_after_a_kill_of_the_process_that_finishes_a_lap_another_finishes_it(
@@ -142,8 +111,8 @@ def test_after_a_kill_of_the_process_that_finishes_a_lap_another_finishes_it(
         by_mouse(guide)
         assert guide.trials == ()
         os.kill(doomed.pid, signal.SIGKILL)
-        until_trials(guide, 1)
-        answer_to_the_end(guide)
+        guide.until_trials(1)
+        guide.answer_to_the_end()
         assert [(trial.slot, trial.outcome) for trial in guide.trials] == [
             ("A", "abandoned"),
             ("B", "abandoned"),

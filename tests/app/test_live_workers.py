@@ -2,19 +2,19 @@
 
 import os
 import signal
-import threading
-import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
-from app.server.live.worker import PROCESS_NAME
+from app.server.live.worker import PROCESS_NAME, TICK_S
 from data.records import Trial
+from tests.conftest import PATIENCE_S
 
 from .conftest import GUIDED_STUDY, Server, serving
 from .live_browser import LiveBrowser
-from .processes import children, is_running
+from .processes import children, until_gone
 
 
 def live_worker(server: Server) -> int:
@@ -42,19 +42,18 @@ def test_a_lost_worker_costs_its_trial_at_most_and_another_takes_over(
         browser.open("A")
         browser.wait_for_the_robot()
         browser.guide(1.0)
-        worker = live_worker(guided_server)
+        assert browser.state is not None
+        seen_s = browser.state.view.time_s
+        worker, begun = live_worker(guided_server), len(browser.told)
         os.kill(worker, number)
-        ended = browser.until("ended")
+        ended = browser.until("ended", since=begun)
         assert (ended["outcome"], ended["slot"]) == ("stopped", "A")
-        browser.until("stored")
+        browser.until("stored", since=begun)
         (trial,) = trials_of(guided_server, participant.id)
         assert (trial.outcome, trial.recording is None) == (outcome, outcome == "failed")
-        assert 0.5 < trial.duration_s < 2.5
-        browser.until("trial", 60)
-        browser.wait_for_the_robot()
+        assert trial.duration_s >= seen_s - TICK_S
+        browser.until("trial", since=begun)
         browser.guide(0.5)
-        assert browser.state is not None
-        assert browser.state.view.is_enabled
         browser.tell("finish")
         browser.until("finished")
     found = trials_of(guided_server, participant.id)
@@ -71,32 +70,33 @@ def test_a_killed_server_leaves_no_process_behind(tmp_path: Path) -> None:
             processes = children(server.process.pid)
             assert len(processes) >= 2
             server.process.kill()
-            server.process.wait(30)
-    end = time.monotonic() + 30
-    while any(map(is_running, processes)) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert not any(map(is_running, processes))
+            server.process.wait(PATIENCE_S)
+    until_gone(processes)
 
 
 @pytest.mark.parametrize("everyone", [False, True], ids=["the server alone", "its processes too"])
 def test_a_server_that_is_told_to_stop_stores_what_is_under_way(tmp_path: Path, everyone: bool) -> None:
     with serving(tmp_path, GUIDED_STUDY) as server, ExitStack() as stack:
+        # A server that is stopped waits for laps to be finished, but not for what finishes them to be loaded.
+        with LiveBrowser(server, server.join()[0]) as first:
+            first.open("A")
+            first.guide(0.5)
+            first.tell("finish")
+            assert first.until("finished")["exposure"]["A"] > 0.0
         people = [server.join() for _ in range(5)]
         browsers = [stack.enter_context(LiveBrowser(server, cookie)) for cookie, _ in people]
         for browser in browsers:
             browser.open("A")
             browser.wait_for_the_robot()
-        threads = [threading.Thread(target=browser.guide, args=(1.0,)) for browser in browsers]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        with ThreadPoolExecutor() as threads:
+            for done in [threads.submit(browser.guide, 1.0) for browser in browsers]:
+                done.result()
         told = [server.process.pid]
         if everyone:
             told += [child.pid for child in children(server.process.pid)]
         for pid in told:
             os.kill(pid, signal.SIGTERM)
-        assert server.process.wait(60) == 0
+        assert server.process.wait(PATIENCE_S) == 0
         for _, participant in people:
             (trial,) = trials_of(server, participant.id)
             assert (trial.outcome, trial.slot) == ("abandoned", "A")

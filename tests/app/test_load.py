@@ -7,6 +7,7 @@ from pathlib import Path
 from app.load.rehearsal import drawn_answers, guided_text
 from data.response_csv import read_response_csv
 from data.study_file import parse_study
+from tests.conftest import PATIENCE_S
 
 from .conftest import GUIDED_STUDY, TINY_STUDY
 from .live_browser import STUDY
@@ -20,7 +21,7 @@ def test_a_few_hands_for_a_few_seconds_give_a_table(tmp_path: Path) -> None:
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=5 * PATIENCE_S,
     )
     assert result.returncode == 0, result.stderr
     assert "3 people at the robot" in result.stdout

@@ -11,6 +11,7 @@ from app.participant import pages
 from app.participant.thanks import completion_code
 from app.server.desk import open_desk
 from app.server.visitors import Visitor
+from tests.conftest import PATIENCE_S
 
 from .participant_study import GUIDED_STUDY, Guest, guest, with_protocol
 
@@ -40,7 +41,7 @@ def run() -> AppTest:
 
         show_study()
 
-    return AppTest.from_function(script, default_timeout=30).run()
+    return AppTest.from_function(script, default_timeout=PATIENCE_S).run()
 
 
 def click(page: AppTest, label: str) -> AppTest:

@@ -14,7 +14,7 @@ from data.store.tables import participants
 
 from .conftest import TINY_STUDY, Server, serving
 from .participant_study import with_protocol
-from .test_walk import TIMEOUT_MS, open_page, watch_both
+from .test_walk import watch_both
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -36,7 +36,7 @@ def open_comparison(server: Server) -> Comparison:
 
 def to_robot(page: Page) -> None:
     page.get_by_role("button", name="Back to the robot").click()
-    expect(page.get_by_label("Wall", exact=True)).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_label("Wall", exact=True)).to_be_visible()
 
 
 def drop_connection(page: Page) -> None:
@@ -50,7 +50,7 @@ def test_a_page_opened_again_begins_the_comparison_anew_and_nothing_less_does(
 ) -> None:
     with serving(tmp_path, STUDY) as server:
         context = chromium.new_context()
-        page = open_page(context)
+        page = context.new_page()
         page.add_init_script(KEEP_SOCKETS)
         page.goto(server.participant_url)
         page.get_by_role("button", name="I agree to take part").click()
@@ -63,7 +63,7 @@ def test_a_page_opened_again_begins_the_comparison_anew_and_nothing_less_does(
         assert open_comparison(server).restarted_at is None
 
         page.reload()
-        expect(page.get_by_text(re.compile("then you can answer"))).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_text(re.compile("then you can answer"))).to_be_visible()
         assert open_comparison(server).restarted_at is not None
         watch_both(page)
 
@@ -76,7 +76,7 @@ def test_a_page_opened_again_begins_the_comparison_anew_and_nothing_less_does(
             question.get_by_role("radio").first.check()
         page.get_by_role("button", name="Submit answers").click()
         over = page.get_by_role("heading", name="This study is over for you")
-        expect(over).to_be_visible(timeout=TIMEOUT_MS)
+        expect(over).to_be_visible()
         assert server.store.responses(open_comparison(server).id) == ()
         context.close()
     assert "Traceback" not in server.log.read_text()

@@ -14,8 +14,9 @@ import pytest
 from app.server.public_url import parse_public_url
 from app.server.serving import shown_host
 from data.errors import InputError
+from tests.conftest import PATIENCE_S
 
-from .conftest import TINY_STUDY, Server, serving
+from .conftest import TINY_STUDY, Server, free_port, serving
 
 PUBLIC = "https://study.example.org"
 INSIDE = "127.0.0.1:8501"
@@ -25,8 +26,7 @@ INSIDE = "127.0.0.1:8501"
 @pytest.fixture(scope="module")
 def behind(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server that a proxy with TLS stands before; its own port is kept in a file."""
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     folder = tmp_path_factory.mktemp("behind")
     (folder / "port").write_text(str(port))
     (folder / "secret").write_text("seven green apples")
@@ -46,7 +46,7 @@ def ask(
         "X-Forwarded-For": "203.0.113.7",
         **{name.replace("_", "-"): value for name, value in headers.items()},
     }
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
     try:
         connection.request(method, path, body, sent)
         answer = connection.getresponse()
@@ -176,7 +176,7 @@ def test_what_is_no_public_address_is_refused_with_the_reason(text: str, why: st
 
 def test_a_wrong_public_address_is_one_line_before_anything_is_written(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "app.cli", "serve", "--store", "s.sqlite", "--public-url", "example.org"]
-    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE_S)
     assert (result.returncode, result.stdout) == (2, "")
     (line,) = result.stderr.splitlines()
     assert "--public-url: 'example.org'" in line

@@ -6,12 +6,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.conftest import PATIENCE_S
+
 from .conftest import TINY_STUDY, serving
 
 
 def attempt(folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "app.cli", "serve", "--store", str(folder / "study.sqlite"), *options]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+    command = [sys.executable, "-m", "app.cli", "serve", "--store", str(folder / "study.sqlite")]
+    command += ["--port", "0", *options]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S)
 
 
 def test_a_port_in_use_is_one_line_and_exit_1(tmp_path: Path) -> None:
@@ -44,7 +47,7 @@ def test_it_stops_cleanly_when_told_to(tmp_path: Path) -> None:
     with serving(tmp_path, TINY_STUDY) as running:
         assert running.ask("/healthz").body == b'{"status":"ok"}'
         running.process.send_signal(signal.SIGINT)
-        assert running.process.wait(timeout=60) == 0
+        assert running.process.wait(PATIENCE_S) == 0
     assert "Traceback" not in running.log.read_text()
 
 
@@ -56,7 +59,7 @@ def test_a_worker_that_starts_after_a_page_was_shown_leaves_the_page_alone() -> 
         [sys.executable, "-c", f"{code}; assert 'streamlit' not in sys.modules"],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=PATIENCE_S,
     )
     assert (result.returncode, result.stderr) == (0, "")
 

@@ -5,32 +5,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import BrowserContext, Page, expect
+from playwright.sync_api import Page, expect
 
 from .conftest import SECRETS, TINY_STUDY, Server, serving
+from .drawn import until_drawn
 from .ear import Ear
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
 pytestmark = pytest.mark.browser
-TIMEOUT_MS = 60_000
 TWO_COMPARISONS = TINY_STUDY.replace("repetitions = 1", "repetitions = 2")
 
 
-def open_page(context: BrowserContext) -> Page:
-    context.set_default_timeout(TIMEOUT_MS)
-    return context.new_page()
-
-
 def watch_both(page: Page) -> None:
-    expect(page.get_by_label("Wall", exact=True)).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_label("Wall", exact=True)).to_be_visible()
     for slot in ("B", "A"):
         page.get_by_role("radio", name=f"Method {slot}", exact=True).check()
-        expect(page.get_by_text(re.compile(f"more with .*{slot},"))).to_have_count(0, timeout=TIMEOUT_MS)
+        expect(page.get_by_text(re.compile(f"more with .*{slot},"))).to_have_count(0)
     page.get_by_role("button", name="Answer the questions").click()
-    expect(page.get_by_role("button", name="Submit answers")).to_be_visible(timeout=TIMEOUT_MS)
-    expect(page.get_by_label("Wall", exact=True)).to_have_count(0, timeout=TIMEOUT_MS)
+    expect(page.get_by_role("button", name="Submit answers")).to_be_visible()
+    expect(page.get_by_label("Wall", exact=True)).to_have_count(0)
 
 
 def scale(page: Page, wording: str) -> list[str]:
@@ -45,7 +40,7 @@ def test_from_consent_to_thanks_with_a_reload_then_the_researcher(
 ) -> None:
     with serving(tmp_path, TWO_COMPARISONS) as server:
         participant = chromium.new_context()
-        page = open_page(participant)
+        page = participant.new_page()
         ear = Ear(page, SECRETS)
         page.goto(server.participant_url)
         page.get_by_role("button", name="I agree to take part").click()
@@ -60,13 +55,13 @@ def test_from_consent_to_thanks_with_a_reload_then_the_researcher(
 
         page.reload()
         chosen = page.get_by_role("radio", name="A smoother")
-        expect(chosen).to_be_checked(timeout=TIMEOUT_MS)
+        expect(chosen).to_be_checked()
         page.get_by_role("button", name="Submit answers").click()
-        expect(page.get_by_role("radio", name="Method A", exact=True)).to_be_focused(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("radio", name="Method A", exact=True)).to_be_focused()
 
         page.get_by_role("button", name="Back to the robot").click()
         watch_both(page)
-        expect(chosen).to_be_checked(timeout=TIMEOUT_MS)
+        expect(chosen).to_be_checked()
         page.get_by_role("radiogroup", name=safest).get_by_role("radio").last.check()
         page.get_by_role("button", name="Submit answers").click()
         page.get_by_role("button", name="Continue").click()
@@ -77,10 +72,10 @@ def test_from_consent_to_thanks_with_a_reload_then_the_researcher(
         expect(page.get_by_role("radio", name="About the same").first).to_be_checked()
         page.get_by_role("radiogroup", name=safest).get_by_role("radio").first.check()
         page.get_by_role("button", name="Submit answers").click()
-        expect(page.get_by_role("heading", name="Thank you")).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("heading", name="Thank you")).to_be_visible()
         ear.look()
         page.goto(f"{server.base}/overview")
-        expect(page.get_by_role("heading", name="Please open your link")).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("heading", name="Please open your link")).to_be_visible()
         ear.look()
         participant.close()
         assert ear.secrets_heard() == []
@@ -89,7 +84,7 @@ def test_from_consent_to_thanks_with_a_reload_then_the_researcher(
         assert any(where.startswith("ws://") for where in heard)
         assert ear.errors == []
         check_store(server)
-        researcher = open_page(chromium.new_context())
+        researcher = chromium.new_page()
         check_console(researcher, server)
         researcher.context.close()
     assert "Traceback" not in server.log.read_text()
@@ -114,23 +109,22 @@ def check_store(server: Server) -> None:
 
 def check_console(page: Page, server: Server) -> None:
     page.goto(server.researcher_url)
-    expect(page.get_by_role("heading", name="Zweifelhaft")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("heading", name="Zweifelhaft")).to_be_visible()
     page.get_by_role("link", name="Results").click()
-    expect(page.get_by_role("cell", name="X", exact=True).first).to_be_visible(timeout=TIMEOUT_MS)
-    expect(page.get_by_test_id("stVegaLiteChart").locator("svg.marks").first).to_be_visible(
-        timeout=TIMEOUT_MS
-    )
+    expect(page.get_by_role("cell", name="X", exact=True).first).to_be_visible()
+    expect(page.get_by_test_id("stVegaLiteChart").locator("svg.marks").first).to_be_visible()
+    until_drawn(page)
     assert "Zwetschge" not in page.content()
     page.get_by_role("link", name="Overview").click()
     page.get_by_role("button", name="Unblind").click()
     page.get_by_role("button", name="Unblind now").click()
-    expect(page.get_by_text("Unblinded: modes are shown by name")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_text("Unblinded: modes are shown by name")).to_be_visible()
     page.get_by_role("link", name="Results").click()
-    expect(page.get_by_role("cell", name="Zwetschge").first).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("cell", name="Zwetschge").first).to_be_visible()
     assert [entry.action for entry in server.store.audit_log()] == ["open console", "unblind"]
     page.get_by_role("link", name="Data").click()
     page.get_by_role("button", name="Prepare the export").click()
-    expect(page.get_by_role("button", name="Download the export")).to_be_visible(timeout=TIMEOUT_MS)
+    expect(page.get_by_role("button", name="Download the export")).to_be_visible()
     for name in ("Study file", "Links"):
         page.get_by_role("link", name=name).click()
-        expect(page.get_by_role("heading", name=name).first).to_be_visible(timeout=TIMEOUT_MS)
+        expect(page.get_by_role("heading", name=name).first).to_be_visible()

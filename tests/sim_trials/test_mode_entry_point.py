@@ -92,7 +92,7 @@ def test_a_packaged_method_is_checked_listed_and_runs_a_lap_and_a_live_trial(
         },
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=600,
     )
     assert ended.returncode == 0, ended.stderr
     assert "lap completed True" in ended.stdout

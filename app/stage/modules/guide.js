@@ -215,6 +215,8 @@ class GuidePage {
     this.quietSince = performance.now();
     this.state = { ...this.state, ...STILL };
     this.scene.gauges.speakNow();
+    // At once: who reads that the robot is in hand takes it, and what is taken before a trial begins doesn't count.
+    if (!this.practice) this.status.showMethods(this.session);
     this.isStale = true;
   }
 

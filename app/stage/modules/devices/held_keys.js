@@ -9,8 +9,8 @@ export const isArrow = (key) => key in ARROWS;
 export const isLetter = (key) => key in LETTERS;
 
 export class HeldKeys {
-  // owns(key): whether the device has a use for a key; onDown(key), onUp(key): it went down or up; late: keys that also
-  // count if they were down before the wall had the focus.
+  // owns(key): whether the device has a use for a key; onDown(key, at), onUp(key, at): it went down or up, and when [ms];
+  // late: keys that also count if they were down before the wall had the focus.
   constructor(wall, { owns, onDown, onUp, late = [] }) {
     Object.assign(this, { wall, owns, onDown, onUp, late });
     this.held = new Set();
@@ -49,12 +49,12 @@ export class HeldKeys {
     if (this.held.has(key) || (event.repeat && !this.late.includes(key))) return;
     this.held.add(key);
     this.wall.focus({ preventScroll: true });
-    this.onDown(key);
+    this.onDown(key, event.timeStamp);
   }
 
   #up(event) {
     const key = event.key.toLowerCase();
-    if (this.held.delete(key)) this.onUp(key);
+    if (this.held.delete(key)) this.onUp(key, event.timeStamp);
   }
 
   #isOurs(target) {

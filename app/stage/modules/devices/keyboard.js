@@ -20,8 +20,8 @@ export class Keyboard {
     this.reach = new Reach(sight);
     this.keys = new HeldKeys(wall, {
       owns: (key) => KEYS.includes(key) || isArrow(key) || isLetter(key),
-      onDown: (key) => this.#down(key),
-      onUp: (key) => this.#up(key),
+      onDown: (key, at) => this.#down(key, at),
+      onUp: (key, at) => this.#up(key, at),
     });
   }
 
@@ -44,21 +44,21 @@ export class Keyboard {
     this.keys.dispose();
   }
 
-  #down(key) {
+  #down(key, at) {
     if (key === 'escape' || (key === 'enter' && this.reach.isHolding)) this.release();
     else if (key === 'enter' || isArrow(key)) this.reach.take();
-    else if (key === ' ') this.#switchSpray();
+    else if (key === ' ') this.#switchSpray(at);
     this.#changed();
   }
 
-  #up(key) {
-    if (key === ' ' && performance.now() - this.switched > TAP_MS) this.blast = false;
+  #up(key, at) {
+    if (key === ' ' && at - this.switched > TAP_MS) this.blast = false;
     this.#changed();
   }
 
-  #switchSpray() {
+  #switchSpray(at) {
     this.blast = !this.blast;
-    this.switched = performance.now();
+    this.switched = at;
   }
 
   #changed() {
