@@ -3,15 +3,19 @@
 The position x of a sampler is ``[u (K-1), side_effect, log gaps | log_nu, log subject_sd, v (S, K-1)]``;
 parts that a model lacks are left out. ``ability = basis @ u`` with the basis of ``analysis.zero_sum``. A
 participant's own abilities are ``ability + subject_sd z[s]``; pooled, there is one participant without
-deviations. Participants stand in the position partly centred, each by a ``c`` of their own from 0 to 1:
-``subject_sd z[s] = subject_sd^(1-c) basis @ (v[s] - c u)``, so ``v[s] ~ Normal(c u, subject_sd^c)``. With
-``c = 0`` that is the non-centred form, ``z[s] = basis @ v[s]``; with ``c = 1`` v is their own ability.
+deviations. Participants stand in the position partly centred, each by a ``c`` of their own from 0 to 1, and
+without what a linear approximation knows of them from a pull ``g`` and an information ``h``:
+``subject_sd z[s] = subject_sd^(1-c) basis @ (v[s] - c u + tau g)``, ``v[s] ~ N(c u - tau g, subject_sd^c)``,
+with ``tau = subject_sd^(1+c) / (1 + subject_sd^2 h)``. If g is zero, ``c = 0`` is the non-centred form,
+``z[s] = basis @ v[s]``, and with ``c = 1`` v is their own ability.
 
 References
 ----------
 Papaspiliopoulos, Roberts, Skoeld 2007, "A general framework for the parametrization of hierarchical models",
 Statistical Science 22 (partly centred forms).
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,19 +34,43 @@ Floats = NDArray[np.float64]
 Places = NDArray[np.uint32]
 
 
-def packed(problem: Problem, centring: Floats | None = None) -> NDArray[np.int64]:
+@dataclass(frozen=True)
+class Form:
+    """How the participants stand in the position; see `form.py` for what makes a good one.
+
+    Attributes
+    ----------
+    centring : ndarray, shape (participant,)
+        ``c``, from 0 to 1.
+    pull : ndarray, shape (participant, K-1)
+        ``g``, the slope of a participant's log-likelihood in their deviation, without one.
+    information : ndarray, shape (participant,)
+        ``h``, how fast that slope falls along itself.
+    """
+
+    centring: Floats
+    pull: Floats
+    information: Floats
+
+
+def non_centred(n_participants: int, n_own: int) -> Form:
+    """Everybody as a deviation from the group."""
+    return Form(np.zeros(n_participants), np.zeros((n_participants, n_own)), np.zeros(n_participants))
+
+
+def packed(problem: Problem, form: Form | None = None) -> NDArray[np.int64]:
     """Everything the density reads, in one block of memory: what a raw pointer can name.
 
     Parameters
     ----------
     problem : Problem
-    centring : ndarray, shape (participant,), optional
-        ``c`` of each participant; without it the form is non-centred.
+    form : Form, optional
+        Without it the form is non-centred.
 
     Returns
     -------
-    ndarray of int64, shape (HEADER + N_REALS + levels + participants + cells + levels * cells,)
-        Header; bits of float64: prior scales, the total of every answer and ``c`` by participant; by cell,
+    ndarray of int64, shape (HEADER + N_REALS + levels + (K + 1) * participants + (1 + levels) * cells,)
+        Header; bits of float64: prior scales, the total of every answer, ``c``, ``h`` and ``g``; by cell,
         the places of A and B among all participants' abilities (participant * modes + mode), two uint32;
         bits of float64: the counts by level, then by cell. Answers go from B much to A much (the order of
         the cut-points).
@@ -60,8 +88,9 @@ def packed(problem: Problem, centring: Floats | None = None) -> NDArray[np.int64
     ]
     scales = [model.prior_sd, SIDE_EFFECT_SD, CUT_GAP_SCALE, LOG_NU_SD, SUBJECT_SD_SCALE]
     ascending = counts.responses[:, ::-1].T
-    c = np.zeros(len(counts.participants)) if centring is None else centring
-    reals = np.concatenate([scales, ascending.sum(axis=1), c])
+    form = form or non_centred(len(counts.participants), len(counts.modes) - 1)
+    stand = [form.centring, form.information, form.pull.ravel()]
+    reals = np.concatenate([scales, ascending.sum(axis=1), *stand])
     first = counts.participant * len(counts.modes)
     places = np.stack([first + counts.mode_a, first + counts.mode_b]).astype(np.uint32)
     return np.concatenate(
@@ -75,25 +104,27 @@ def packed(problem: Problem, centring: Floats | None = None) -> NDArray[np.int64
 
 
 @compiled(REGROUPED)
-def _spread(v: Floats, c: float, u: Floats, scale: float, base: Floats, out: Floats) -> float:
-    """``out = base + scale * basis @ y`` with ``y = v - c u`` in O(K); returns ``y @ y``."""
+def _spread(v: Floats, centre: Floats, scale: float, base: Floats, out: Floats) -> float:
+    """``out = base + scale * basis @ y`` with ``y = v - centre`` in O(K); returns ``y @ y``."""
     n = out.shape[0]
     total, squares = 0.0, 0.0
     for j in range(n - 1):
-        y = v[j] - c * u[j]
+        y = v[j] - centre[j]
         total += y
         squares += y * y
     root = np.sqrt(n)
     shift = total / (root + n)
     for j in range(n - 1):
-        out[j] = base[j] + scale * (v[j] - c * u[j] - shift)
+        out[j] = base[j] + scale * (v[j] - centre[j] - shift)
     out[n - 1] = base[n - 1] - scale * total / root
     return squares
 
 
 @compiled(REGROUPED)
-def _gather(g: Floats, scale: float, v: Floats, c: float, u: Floats, weight: float, out: Floats) -> float:
-    """``out = scale * basis.T @ g - weight * y`` with ``y = v - c u`` in O(K), the adjoint of ``_spread``.
+def _gather(
+    g: Floats, scale: float, v: Floats, centre: Floats, c: float, weight: float, out: Floats
+) -> float:
+    """``out = scale * basis.T @ g - weight * y`` with ``y = v - centre`` in O(K), the adjoint of ``_spread``.
 
     Returns ``(1 - c) scale * y @ basis.T @ g + c weight * y @ y``.
     """
@@ -105,7 +136,7 @@ def _gather(g: Floats, scale: float, v: Floats, c: float, u: Floats, weight: flo
     shift = total / (root + n) + g[n - 1] / root
     along, squares = 0.0, 0.0
     for j in range(n - 1):
-        y = v[j] - c * u[j]
+        y = v[j] - centre[j]
         pull = scale * (g[j] - shift)
         along += y * pull
         squares += y * y
@@ -114,15 +145,37 @@ def _gather(g: Floats, scale: float, v: Floats, c: float, u: Floats, weight: flo
 
 
 @compiled(REGROUPED)
-def _set_own(v: Floats, u: Floats, centring: Floats, log_sd: float, common: Floats, own: Floats) -> float:
+def _lean(c: float, information: float, log_sd: float) -> tuple[float, float]:
+    """``tau``, and its slope in ``log_sd``."""
+    sd = np.exp(log_sd)
+    t = information * sd * sd
+    tau = np.exp((1.0 + c) * log_sd) / (1.0 + t)
+    return tau, tau * (1.0 + c - 2.0 * t / (1.0 + t))
+
+
+@compiled(REGROUPED)
+def _set_centre(c: float, u: Floats, tau: float, g: Floats, centre: Floats) -> None:
+    """Where a participant's ``v`` is expected."""
+    for j in range(centre.shape[0]):
+        centre[j] = c * u[j] - tau * g[j]
+
+
+@compiled(REGROUPED)
+def _set_own(
+    v: Floats, u: Floats, form: Floats, n_participants: int, log_sd: float, common: Floats, own: Floats
+) -> float:
     """Every participant's abilities, ``common + subject_sd z[s]``; returns the log prior of ``v``."""
     n_modes = common.shape[0]
     free = n_modes - 1
+    centre = np.empty(free)
     logp = 0.0
-    for s in range(centring.shape[0]):
-        c = centring[s]
+    for s in range(n_participants):
+        c = form[s]
+        tau, _ = _lean(c, form[n_participants + s], log_sd)
+        g = form[2 * n_participants + s * free : 2 * n_participants + (s + 1) * free]
+        _set_centre(c, u, tau, g, centre)
         here = own[s * n_modes : (s + 1) * n_modes]
-        squares = _spread(v[s * free : (s + 1) * free], c, u, np.exp((1.0 - c) * log_sd), common, here)
+        squares = _spread(v[s * free : (s + 1) * free], centre, np.exp((1.0 - c) * log_sd), common, here)
         logp -= 0.5 * squares * np.exp(-2.0 * c * log_sd) + free * c * log_sd
     return logp
 
@@ -132,7 +185,8 @@ def _set_own_slopes(
     d_own: Floats,
     v: Floats,
     u: Floats,
-    centring: Floats,
+    form: Floats,
+    n_participants: int,
     log_sd: float,
     d_common: Floats,
     d_v: Floats,
@@ -141,14 +195,22 @@ def _set_own_slopes(
     """The adjoint of ``_set_own``; ``d_u`` is what comes by way of ``v``. Returns the slope in ``log_sd``."""
     n_modes = d_common.shape[0]
     free = n_modes - 1
+    centre = np.empty(free)
     slope = 0.0
-    for s in range(centring.shape[0]):
-        c = centring[s]
+    for s in range(n_participants):
+        c = form[s]
+        tau, d_tau = _lean(c, form[n_participants + s], log_sd)
+        g = form[2 * n_participants + s * free : 2 * n_participants + (s + 1) * free]
+        _set_centre(c, u, tau, g, centre)
         here, pull = d_own[s * n_modes : (s + 1) * n_modes], d_v[s * free : (s + 1) * free]
         scale, weight = np.exp((1.0 - c) * log_sd), np.exp(-2.0 * c * log_sd)
-        slope += _gather(here, scale, v[s * free : (s + 1) * free], c, u, weight, pull) - free * c
+        slope += _gather(here, scale, v[s * free : (s + 1) * free], centre, c, weight, pull) - free * c
         for j in range(n_modes):
             d_common[j] += here[j]
+        along = 0.0
+        for j in range(free):
+            along += g[j] * pull[j]
+        slope += d_tau * along
         if c > 0.0:
             for j in range(free):
                 d_u[j] -= c * pull[j]
@@ -201,12 +263,12 @@ def log_density(x: Floats, gradient: Floats, data: NDArray[np.int64]) -> float:
     n_cells, n_modes, n_participants = data[_CELLS], data[_MODES], data[_PARTICIPANTS]
     levels, n_gaps = data[_LEVELS], data[_GAPS]
     is_adjacent, is_hierarchical, has_side = data[_ADJACENT] == 1, data[_HIERARCHICAL] == 1, data[_SIDE] == 1
-    at_centring = HEADER + N_REALS + levels
-    at_places = at_centring + n_participants
+    at_form = HEADER + N_REALS + levels
+    at_places = at_form + (n_modes + 1) * n_participants
     at_counts = at_places + n_cells
     scales = data[HEADER : HEADER + N_REALS].view(np.float64)
-    totals = data[HEADER + N_REALS : at_centring].view(np.float64)
-    centring = data[at_centring:at_places].view(np.float64)
+    totals = data[HEADER + N_REALS : at_form].view(np.float64)
+    form = data[at_form:at_places].view(np.float64)
     places = data[at_places:at_counts].view(np.uint32)
     a, b = places[:n_cells], places[n_cells:]
     counts = data[at_counts : at_counts + levels * n_cells].view(np.float64)
@@ -218,11 +280,11 @@ def log_density(x: Floats, gradient: Floats, data: NDArray[np.int64]) -> float:
     u, v = x[:free], x[at_own:]
     side = x[free] if has_side else 0.0
     common, zero = np.empty(n_modes), np.zeros(n_modes)
-    logp = -0.5 * _spread(u, 0.0, u, 1.0, zero, common) / scales[0] ** 2
+    logp = -0.5 * _spread(u, zero, 1.0, zero, common) / scales[0] ** 2
     own = common
     if is_hierarchical:
         own = np.empty(n_participants * n_modes)
-        logp += _set_own(v, u, centring, x[at_spread], common, own)
+        logp += _set_own(v, u, form, n_participants, x[at_spread], common, own)
     eta, d_eta = np.empty(n_cells), np.empty(n_cells)
     _set_leads(own, a, b, side, eta)
 
@@ -251,12 +313,12 @@ def log_density(x: Floats, gradient: Floats, data: NDArray[np.int64]) -> float:
     if is_hierarchical:
         d_common = np.zeros(n_modes)
         gradient[at_spread] += _set_own_slopes(
-            d_own, v, u, centring, x[at_spread], d_common, gradient[at_own:], d_u
+            d_own, v, u, form, n_participants, x[at_spread], d_common, gradient[at_own:], d_u
         )
         logp += _log_half_normal(x[at_spread], scales[4], gradient, at_spread)
     if has_side:
         gradient[free] += d_side
         logp += _normal(side, scales[1], gradient, free)
-    _gather(d_common, 1.0, u, 0.0, u, 1.0 / scales[0] ** 2, gradient[:free])
+    _gather(d_common, 1.0, u, zero, 0.0, 1.0 / scales[0] ** 2, gradient[:free])
     gradient[:free] += d_u
     return logp

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from analysis.engines import nuts
-from analysis.engines.centring import centring
 from analysis.engines.density import packed
+from analysis.engines.form import form_of
 from analysis.model import Problem
 from analysis.results import Draws, FitSettings
 from analysis.softmax import worth_of
@@ -25,7 +25,7 @@ def sample(
     results = []
     for k, problem in enumerate(problems):
         chains = nuts.sample(
-            packed(problem, centring(problem) if problem.model.hierarchical else None),
+            packed(problem, form_of(problem) if problem.model.hierarchical else None),
             problem.n_dim,
             problem.n_global,
             seed=question_seed(settings.seed, problem.counts.question.name),
