@@ -13,7 +13,6 @@ from math import nan
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.stats import rankdata
 
 from analysis.answer_shares import thinned
 from analysis.diagnostics import hdi
@@ -221,4 +220,6 @@ def _across_comparisons(
 def _signed_ranks(values: FloatArray) -> FloatArray:
     """Midranks of the sizes with the signs of the values, 0 for 0: turning A and B round turns the sign
     alone."""
-    return np.asarray(np.sign(values) * rankdata(np.abs(values)))
+    _, place, count = np.unique(np.abs(values), return_inverse=True, return_counts=True)
+    midrank = np.cumsum(count) - (count - 1) / 2
+    return np.asarray(np.sign(values) * midrank[place])

@@ -23,6 +23,8 @@ CIRCULAR_BY_CHANCE = 0.25
 MOST_MODES = 60
 """Triads grow with the cube of the modes; with more than these they are not counted."""
 _COIN_TOSSES = 1000
+_MOST_AT_ONCE = 1_000_000
+"""So many single answers are tossed for together: more would fill the memory."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,10 @@ def _question(
 
 
 def _turned(rows: pd.DataFrame, modes: tuple[str, ...], question: QuestionScale) -> pd.DataFrame:
-    """One row an answer, turned to the mode that comes first in the study: ``score`` > 0 prefers it."""
+    """One row an answer, turned to the mode that comes first in the study: ``score`` > 0 prefers it.
+
+    ``before`` is the score of the same person's answer to the same pair before this one, or nan.
+    """
     place = {mode: k for k, mode in enumerate(modes)}
     half = question.levels // 2
     steps = [k for k in range(half, -half - 1, -1) if k or question.levels % 2]
@@ -127,16 +132,15 @@ def _turned(rows: pd.DataFrame, modes: tuple[str, ...], question: QuestionScale)
         }
     )
     frame = frame.loc[frame.index.repeat(rows["count"].to_numpy())]
-    return frame.sort_values("repetition", kind="stable", ignore_index=True)
+    frame = frame.sort_values("repetition", kind="stable", ignore_index=True)
+    return frame.assign(before=frame.groupby(["participant", "i", "j"])["score"].shift())
 
 
 def _person(question: str, who: str, answers: pd.DataFrame, n_modes: int) -> Consistency:
     above = _decided(answers, n_modes)
     triads, circular = _triads(above)
-    before = answers.groupby(["i", "j"])["score"].shift()
-    again = before.notna()
-    product = np.sign(before[again]) * np.sign(answers.loc[again, "score"])
-    same = int((np.sign(before[again]) == np.sign(answers.loc[again, "score"])).sum())
+    before, now = np.sign(answers["before"].to_numpy(float)), np.sign(answers["score"].to_numpy())
+    again = ~np.isnan(before)
     return Consistency(
         question,
         who,
@@ -145,8 +149,8 @@ def _person(question: str, who: str, answers: pd.DataFrame, n_modes: int) -> Con
         circular,
         _zeta(above, circular),
         int(again.sum()),
-        same,
-        int((product < 0).sum()),
+        int((before == now).sum()),
+        int((before * now < 0).sum()),
     )
 
 
@@ -176,7 +180,7 @@ def _zeta(above: NDArray[np.bool_], circular: int) -> float:
 
 def _over_repeats(answers: pd.DataFrame) -> tuple[float, float]:
     """Share of the same expected by chance, and the correlation of answers with those before."""
-    before = answers.groupby(["participant", "i", "j"])["score"].shift()
+    before = answers["before"]
     again = before.notna()
     if not again.any():
         return nan, nan
@@ -208,11 +212,13 @@ def _agreement(answers: pd.DataFrame, n_modes: int, seed: int) -> tuple[float, f
         return nan, nan
     seen = float(_kendall_u(signs[None])[0])
     rng = np.random.default_rng(seed)
-    tossed = [
-        float(_kendall_u((signs * rng.choice([-1.0, 1.0], size=signs.shape))[None])[0])
-        for _ in range(_COIN_TOSSES)
-    ]
-    return seen, float((1 + np.sum(np.array(tossed) >= seen - 1e-12)) / (1 + _COIN_TOSSES))
+    at_once = max(1, _MOST_AT_ONCE // signs.size)
+    as_agreed = 0
+    for done in range(0, _COIN_TOSSES, at_once):
+        sets = min(at_once, _COIN_TOSSES - done)
+        tossed = _kendall_u(signs * rng.choice([-1.0, 1.0], size=(sets, *signs.shape)))
+        as_agreed += int(np.sum(tossed >= seen - 1e-12))
+    return seen, (1 + as_agreed) / (1 + _COIN_TOSSES)
 
 
 def _kendall_u(signs: FloatArray) -> FloatArray:

@@ -92,10 +92,10 @@ def _checks(table: ResponseTable, fit: Fit, question: QuestionFit) -> list[Predi
     ability = kept.ability[:, [fit.modes.index(mode) for mode in counts.modes]]
     seed = question_seed(fit.settings.seed, f"predictive {question.question.name}")
     predicted = _replicates(counts, ability, kept.parameters, np.random.default_rng(seed))
-    observed = counts.responses[None]
+    observed = _quantities(counts, counts.responses[None], fit.modes)
     found = []
     for (kind, what), values in _quantities(counts, predicted, fit.modes).items():
-        seen = float(_quantities(counts, observed, fit.modes)[kind, what][0])
+        seen = float(observed[kind, what][0])
         low, high = np.quantile(values, [0.03, 0.97])
         p = float((values > seen + 1e-12).mean() + 0.5 * (abs(values - seen) <= 1e-12).mean())
         found.append(
@@ -137,12 +137,13 @@ def _quantities(
         np.maximum(place[counts.mode_a], place[counts.mode_b]),
     )
     pairs = low * len(modes) + high
+    by_pair = np.argsort(pairs, kind="stable")
+    every, starts = np.unique(pairs[by_pair], return_index=True)
+    wins = np.add.reduceat(for_i[:, by_pair], starts, axis=1)
+    shares = wins / np.add.reduceat(responses[0].sum(axis=1)[by_pair], starts)
     found: dict[tuple[Kind, str], FloatArray] = {}
-    for pair in np.unique(pairs):
-        at = pairs == pair
-        i, j = divmod(int(pair), len(modes))
-        n = responses[0, at].sum()
-        found["wins", f"{modes[i]} over {modes[j]}"] = for_i[:, at].sum(axis=1) / n
+    for column, (i, j) in enumerate(zip(*np.divmod(every, len(modes)), strict=True)):
+        found["wins", f"{modes[i]} over {modes[j]}"] = shares[:, column]
     if counts.levels > 2:
         found["ties", ""] = responses[..., half].sum(axis=1) / total
         if counts.levels == 5:
