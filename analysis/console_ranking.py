@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from analysis.diagnostics import shown_ess, shown_rhat
 from analysis.figures.labels import LIKELY, one_line, percent, shortened
 from analysis.report.findings import Finding, findings
 from analysis.results import Fit, ModeResult
@@ -142,6 +143,6 @@ def _about_the_sampler(fit: Fit) -> list[str]:
         return []
     state = "converged" if fit.converged else "NOT converged"
     return [
-        f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat {fit.rhat_max:.3f}, "
-        f"ESS {fit.ess_min:,.0f}, divergences {fit.divergences:,}."
+        f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat {shown_rhat(fit.rhat_max)}, "
+        f"ESS {shown_ess(fit.ess_min)}, divergences {fit.divergences:,}."
     ]

@@ -64,6 +64,11 @@ class CovariateEffect:
     p_positive: float
     residual_sd: float
 
+    @property
+    def is_clear(self) -> bool:
+        """Whether the interval leaves out 0."""
+        return not self.slope_hdi_low <= 0 <= self.slope_hdi_high
+
 
 def covariate_refusal(fit: Fit, metrics: MetricTable | None) -> str:
     """Why no model of worth on metrics can be fitted, as a sentence; empty if one can."""

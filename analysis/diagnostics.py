@@ -42,9 +42,14 @@ class Convergence:
         return float(min(self.ess_bulk.min(), self.ess_tail.min()))
 
     @property
+    def failing(self) -> NDArray[np.bool_]:
+        """Which quantities do not pass the gate; nan never does."""
+        return ~((self.rhat < RHAT_BELOW) & (self.ess_bulk > ESS_ABOVE) & (self.ess_tail > ESS_ABOVE))
+
+    @property
     def passed(self) -> bool:
-        """True if every quantity passes the gate; nan never does."""
-        return self.rhat_max < RHAT_BELOW and self.ess_min > ESS_ABOVE
+        """True if every quantity passes the gate."""
+        return not self.failing.any()
 
 
 def convergence(draws: NDArray[np.float64]) -> Convergence:
@@ -78,6 +83,16 @@ def _convergence(draws: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
     tails = [_ess(_split((draws <= end).astype(np.float64))) for end in ends]
     found = (np.maximum(_rhat(z), _rhat(folded)), _ess(z), np.minimum(*tails))
     return tuple(np.where(is_known, values, np.nan) for values in found)
+
+
+def shown_rhat(rhat: float) -> str:
+    """Three digits, rounded to the side of the gate that the value is on: 1.0096 has passed, so 1.009."""
+    return f"{(np.floor if rhat < RHAT_BELOW else np.ceil)(1000 * rhat) / 1000:.3f}"
+
+
+def shown_ess(ess: float) -> str:
+    """Without digits, rounded to the side of the gate that the value is on: 400.3 has passed, so 401."""
+    return f"{(np.ceil if ess > ESS_ABOVE else np.floor)(ess):,.0f}"
 
 
 def hdi(draws: NDArray[np.float64], probability: float) -> NDArray[np.float64]:

@@ -8,8 +8,7 @@ from typing import Protocol, get_args
 import numpy as np
 
 from analysis.counts import Counts, count_responses
-from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, Convergence
-from analysis.gate import reported_convergence
+from analysis.gate import Gate, reported_convergence
 from analysis.identifiability import Examination, examine
 from analysis.model import Problem, describe, model_of, priors
 from analysis.results import Draws, Engine, Fit, FitSettings, Link, QuestionFit
@@ -53,7 +52,7 @@ class _Prepared:
 @dataclass(frozen=True)
 class _Sampled:
     draws: Draws
-    state: Convergence
+    state: Gate
 
 
 def fit(table: ResponseTable, settings: FitSettings | None = None, progress: Progress | None = None) -> Fit:
@@ -163,7 +162,7 @@ def _sampled(problems: list[Problem], settings: FitSettings, tell: Progress) -> 
     sample = _sampler(settings.engine)
     names = [problem.counts.question.short or problem.counts.question.name for problem in problems]
     draws = sample(problems, settings, lambda k: tell(k, len(problems), names[k - 1]))
-    found = [_Sampled(d, reported_convergence(d)) for d in draws]
+    found = [_gated(d, problem) for d, problem in zip(draws, problems, strict=True)]
     for times in LONGER:
         failed = [k for k, one in enumerate(found) if not one.state.passed]
         if not failed:
@@ -172,9 +171,12 @@ def _sampled(problems: list[Problem], settings: FitSettings, tell: Progress) -> 
         longer = replace(settings, draws=settings.draws * times)
         for k, again in zip(failed, sample([problems[k] for k in failed], longer), strict=True):
             # Thinned, so that every question has as many draws as the settings say.
-            kept = every_draw(again, times)
-            found[k] = _Sampled(kept, reported_convergence(kept))
+            found[k] = _gated(every_draw(again, times), problems[k])
     return found
+
+
+def _gated(draws: Draws, problem: Problem) -> _Sampled:
+    return _Sampled(draws, reported_convergence(draws, problem.counts.modes))
 
 
 def _sampler(engine: Engine) -> Sampler:
@@ -226,13 +228,7 @@ def _question_fit(prepared: _Prepared, modes: tuple[str, ...], found: _Sampled |
         divergences=int(draws.diverging.sum()),
     )
     if not state.passed:
-        return replace(
-            sampled,
-            reason=(
-                f"The sampling did not converge: R-hat {state.rhat_max:.3f} (must be below {RHAT_BELOW}), "
-                f"effective sample size {state.ess_min:.0f} (must be above {ESS_ABOVE:.0f})."
-            ),
-        )
+        return replace(sampled, reason=state.refusal)
     said = sampled.warnings
     if draws.diverging.mean() > DIVERGENCES_WORTH_SAYING:
         said += (

@@ -5,12 +5,13 @@ modes, and every parameter. Whatever else is printed is a share, a mean or a qua
 these, or a smooth function of a few of them: `README.md` says which of which.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnostics import Convergence, convergence
+from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, Convergence, convergence, shown_ess, shown_rhat
 from analysis.results import Draws
 from analysis.summaries import ranks
 
@@ -21,14 +22,55 @@ _BLOCK = 256
 
 FloatArray = NDArray[np.float64]
 
+_IN_WORDS = {
+    "side_effect": "the side effect",
+    "cut_1": "the first cut-point",
+    "cut_2": "the second cut-point",
+    "log_nu": "the parameter of the ties",
+    "subject_sd": "the spread between participants",
+}
 
-def reported_convergence(draws: Draws) -> Convergence:
-    """Convergence of every quantity that is reported; of the differences, those of ``watched_pairs``."""
-    found = [convergence(quantities) for quantities in _quantities(draws)]
-    return Convergence(
+
+@dataclass(frozen=True)
+class Gate(Convergence):
+    """Convergence of every quantity that is reported, and what each is called in a sentence."""
+
+    names: tuple[str, ...]
+
+    @property
+    def refusal(self) -> str:
+        """Why a question is not ranked, as a sentence; empty if it may be."""
+        if self.passed:
+            return ""
+        failed, ess = int(self.failing.sum()), np.minimum(self.ess_bulk, self.ess_tail)
+        # How far each is from its limits, on one scale: 1 at the gate, and nan the farthest.
+        worst = int(np.maximum((self.rhat - 1) / (RHAT_BELOW - 1), ESS_ABOVE / ess).argmax())
+        return (
+            f"The sampling did not converge: {failed:,} of {len(self.names):,} quantities "
+            f"{'fails' if failed == 1 else 'fail'}. The worst is {self.names[worst]}: R-hat "
+            f"{shown_rhat(float(self.rhat[worst]))} (must be below {RHAT_BELOW}), effective sample size "
+            f"{shown_ess(float(ess[worst]))} (must be above {ESS_ABOVE:.0f})."
+        )
+
+
+def reported_convergence(draws: Draws, modes: Sequence[str]) -> Gate:
+    """Convergence of all that is reported; of the differences, those of ``watched_pairs``.
+
+    Parameters
+    ----------
+    modes : sequence of str
+        In the order of the draws' last axis.
+    """
+    names: list[str] = []
+    found: list[Convergence] = []
+    for part, quantities in _quantities(draws, modes):
+        names += part
+        found.append(convergence(quantities))
+    return Gate(
         np.concatenate([part.rhat for part in found]),
         np.concatenate([part.ess_bulk for part in found]),
         np.concatenate([part.ess_tail for part in found]),
+        tuple(names),
     )
 
 
@@ -54,14 +96,16 @@ def watched_pairs(ability: FloatArray) -> NDArray[np.intp]:
     return np.concatenate([np.stack([order[:-k], order[k:]], axis=1) for k in range(1, apart + 1)])
 
 
-def _quantities(draws: Draws) -> Iterator[FloatArray]:
-    """Draws of all that is behind the gate, in parts of shape (quantity, chain, draw)."""
-    for by_mode in (draws.ability, draws.worth, ranks(draws.ability)):
-        yield np.moveaxis(by_mode, -1, 0)
+def _quantities(draws: Draws, modes: Sequence[str]) -> Iterator[tuple[list[str], FloatArray]]:
+    """Names and draws of all that is behind the gate, in parts of shape (quantity, chain, draw)."""
+    by_mode = {"ability": draws.ability, "worth": draws.worth, "rank": ranks(draws.ability)}
+    for what, values in by_mode.items():
+        yield [f"the {what} of {mode}" for mode in modes], np.moveaxis(values, -1, 0)
     if draws.parameters:
-        yield np.stack(list(draws.parameters.values()))
+        yield [_IN_WORDS[name] for name in draws.parameters], np.stack(list(draws.parameters.values()))
     ability = np.ascontiguousarray(np.moveaxis(draws.ability, -1, 0))
     pairs = watched_pairs(draws.ability)
     for k in range(0, len(pairs), _BLOCK):
         one, other = pairs[k : k + _BLOCK].T
-        yield ability[one] - ability[other]
+        names = [f"the difference of {modes[i]} and {modes[j]}" for i, j in pairs[k : k + _BLOCK]]
+        yield names, ability[one] - ability[other]

@@ -136,11 +136,11 @@ def _sides(counts: Counts) -> list[str]:
     if np.linalg.matrix_rank(design) < len(counts.modes):
         return [
             "No pair was shown with its sides exchanged and the side effect can't be told from the modes: it "
-            "rests on its prior. A model without side effect may be meant."
+            "rests on its prior. If A and B mean nothing here, “--no-side-effect” leaves it out."
         ]
     return [
         "No pair was shown with its sides exchanged: the side effect is told from the modes only by how "
-        "pairs fit together. If A and B mean nothing here, a model without side effect is meant."
+        "pairs fit together. If A and B mean nothing here, “--no-side-effect” leaves it out."
     ]
 
 

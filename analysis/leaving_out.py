@@ -3,7 +3,8 @@
 A model is fitted once, to everybody. What it would predict of a participant it had not seen follows by
 weighting its draws with one over the likelihood of that person's answers, their own deviations integrated
 out, the largest weights smoothed. Where the weights cannot be trusted (k-hat above 0.7: the person decides
-the fit) the model is fitted again without that person.
+the fit) the model is fitted again without that person. A fit that a report would not rank by, for want of
+convergence above all, is not used here either: its model has no score, and says why.
 
 References
 ----------
@@ -23,11 +24,10 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from analysis.answer_shares import ThinnedDraws, thinned
-from analysis.counts import Counts, count_responses
-from analysis.engines import fast
+from analysis.counts import count_responses
 from analysis.fit import fit
 from analysis.marginal import log_likelihoods, of_people
-from analysis.model import Model, Problem, model_of
+from analysis.model import model_of
 from analysis.pareto import smoothed
 from analysis.results import Draws, Fit, FitSettings, Link, QuestionFit
 from data.responses import ResponseTable
@@ -53,14 +53,17 @@ class ModelScore:
     model : str
         What differs from the model of the report, or that it is the report's.
     elpd : float
-        Sum over participants of the log predictive density of all answers of each.
+        Sum over participants of the log predictive density of all answers of each; nan if it has no score.
     difference, difference_se : float
-        To the report's model and its standard error over participants; 0 for the report's own.
+        To the report's model and its standard error over participants; 0 for the report's own, nan if either
+        has no score.
     participants : int
     refitted : int
         Participants for whom the model had to be fitted again without them.
     reading : str
-        In words, cautiously.
+        In words, cautiously; empty for the report's own model.
+    missing : str
+        Why there is no score, or nothing to compare it with; else empty.
     """
 
     question: str
@@ -71,14 +74,17 @@ class ModelScore:
     participants: int
     refitted: int
     reading: str
+    missing: str = ""
 
 
 @dataclass(frozen=True)
 class _Points:
-    """Log predictive density of every participant's answers, and for how many it took a fit of their own."""
+    """Log predictive density of every participant's answers, for how many it took a fit without them, and why
+    it is not known of all."""
 
     values: FloatArray
     refitted: int
+    missing: str = ""
 
 
 def model_scores(
@@ -86,8 +92,7 @@ def model_scores(
 ) -> tuple[ModelScore, ...]:
     """Scores of the report's model and of its alternatives, question by question, by the fast engine.
 
-    Empty if participants are unknown or fewer than three. Questions that are not ranked are left out, and
-    alternatives that do not converge.
+    Empty if participants are unknown or fewer than three. Questions that are not ranked are left out.
     """
     if not table.has_participants:
         return ()
@@ -115,16 +120,13 @@ def _as_fast(settings: FitSettings) -> FitSettings:
 def _question_scores(
     table: ResponseTable, question: QuestionFit, fitted: Fit, base: FitSettings
 ) -> list[ModelScore]:
-    counts = count_responses(table, question.question)
     alone = replace(table, questions=(question.question,))
     points: dict[str, _Points] = {}
-    for name, settings in _variants(base, counts.levels).items():
-        draws = question.draws if not points and fitted.settings.engine != "gibbs" else None
-        if draws is None:
-            (again,) = fit(alone, settings).questions
-            draws = again.draws if again.ranked else None
-        if draws is not None:
-            points[name] = _pointwise(counts, settings, draws, fitted.modes)
+    for name, settings in _variants(base, question.question.levels).items():
+        found = question
+        if points or fitted.settings.engine == "gibbs":
+            (found,) = fit(alone, settings).questions
+        points[name] = _pointwise(alone, settings, found)
     return _scores(question.question.name, points)
 
 
@@ -141,45 +143,75 @@ def _variants(settings: FitSettings, levels: int) -> dict[str, FitSettings]:
     return variants
 
 
-def _pointwise(counts: Counts, settings: FitSettings, draws: Draws, modes: tuple[str, ...]) -> _Points:
+def _pointwise(table: ResponseTable, settings: FitSettings, fitted: QuestionFit) -> _Points:
     """Weighted draws of the fit to everybody, or of a fit without the person where k-hat asks for it."""
-    model = model_of(settings, counts.levels, has_participants=True)
-    kept = thinned(draws, _DRAWS)
-    in_order = ThinnedDraws(kept.ability[:, [modes.index(m) for m in counts.modes]], kept.parameters)
-    logs = log_likelihoods(counts, model, in_order)
-    values, refitted = np.empty(len(logs)), 0
+    if not fitted.ranked or fitted.draws is None:
+        return _Points(np.full(fitted.n_participants, np.nan), 0, "the model did not converge")
+    logs = _log_likelihoods(table, settings, fitted.draws)
+    values, refitted, failed = np.empty(len(logs)), 0, 0
     for s, of_person in enumerate(logs):
         weights = smoothed(-of_person)
         if weights.trusted:
             values[s] = logsumexp(weights.log + of_person)
-        else:
-            values[s] = left_out(counts, s, model, settings)
-            refitted += 1
-    return _Points(values, refitted)
+            continue
+        values[s] = left_out(table, s, settings)
+        refitted += 1
+        failed += bool(np.isnan(values[s]))
+    missing = f"no ranking from the fit without a participant, {failed} times" if failed else ""
+    return _Points(values, refitted, missing)
 
 
-def left_out(counts: Counts, person: int, model: Model, settings: FitSettings) -> float:
-    """Log predictive density of one person's answers, by a fit to all others."""
-    is_out = np.arange(len(counts.participants)) == person
-    rest = of_people(counts, ~is_out)
-    problem = Problem(rest if model.hierarchical else rest.pooled(), model)
-    kept = thinned(fast.sample([problem], settings)[0], _DRAWS)
-    (logs,) = log_likelihoods(of_people(counts, is_out), model, kept)
-    return float(logsumexp(logs) - np.log(len(logs)))
+def left_out(table: ResponseTable, person: int, settings: FitSettings) -> float:
+    """Log predictive density of one person's answers, by a fit to all others.
+
+    Parameters
+    ----------
+    table : ResponseTable
+        Of one question.
+    person : int
+        Place among the sorted participants.
+
+    Returns
+    -------
+    float
+        nan if the fit to all others does not rank: it did not converge, or they do not connect the modes.
+    """
+    (question,) = table.questions
+    name = count_responses(table, question).participants[person]
+    rest = replace(table, rows=table.rows[table.rows["participant"] != name].reset_index(drop=True))
+    (fitted,) = fit(rest, settings).questions
+    if not fitted.ranked or fitted.draws is None:
+        return float("nan")
+    logs = _log_likelihoods(table, settings, fitted.draws, person)
+    return float(logsumexp(logs[0]) - np.log(logs.shape[1]))
+
+
+def _log_likelihoods(
+    table: ResponseTable, settings: FitSettings, draws: Draws, person: int | None = None
+) -> FloatArray:
+    """Of every participant's answers, or of one's, to the one question: (participant, draw)."""
+    counts = count_responses(table, table.questions[0])
+    if person is not None:
+        counts = of_people(counts, np.arange(len(counts.participants)) == person)
+    kept = thinned(draws, _DRAWS)
+    place = [table.modes.index(mode) for mode in counts.modes]
+    model = model_of(settings, counts.levels, has_participants=True)
+    return log_likelihoods(counts, model, ThinnedDraws(kept.ability[:, place], kept.parameters))
 
 
 def _scores(question: str, points: dict[str, _Points]) -> list[ModelScore]:
-    if "as reported" not in points:
-        return []
-    base = points["as reported"].values
+    base = points["as reported"]
     scores = []
     for model, found in points.items():
-        lead = found.values - base
+        lead = found.values - base.values
         n = len(lead)
         difference, se = float(lead.sum()), float(np.sqrt(n) * lead.std(ddof=1))
-        reading = "" if found.values is base else _reading(difference, se)
+        missing = found.missing
+        if base.missing and not missing:
+            missing = "the report's own model has no score"
+        reading = "" if found is base else "not scored" if missing else _reading(difference, se)
         elpd = float(found.values.sum())
-        scores.append(ModelScore(question, model, elpd, difference, se, n, found.refitted, reading))
+        scores.append(ModelScore(question, model, elpd, difference, se, n, found.refitted, reading, missing))
     return scores
 
 

@@ -1,33 +1,61 @@
-"""Log-likelihood of each person's answers given the group's parameters, own deviations integrated out.
+"""One person's deviations given the group's parameters: points with weights, draw by draw.
 
-A person's deviations are drawn from a normal distribution laid over their posterior at the middle of the
-group's (Laplace), and weighted back: a few nodes then serve any number of modes and of answers. The density
-is the sampler's own, so nothing of the model is written a second time.
+A person's deviations are drawn from a normal distribution laid over their posterior in the middle of the
+group's (Laplace). What that says of the answers, taken as one normal observation of the person's own
+abilities, moves the distribution to every other draw of the group's parameters, and weights put right what is
+not normal: a few points then serve any number of modes and of answers. The density is the sampler's own, so
+nothing of the model is written a second time.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp, ndtri
 
 from analysis.answer_shares import ThinnedDraws
 from analysis.counts import Counts
 from analysis.engines.compiled import compiled
 from analysis.engines.density import log_density, packed
 from analysis.model import Model, Problem
-from analysis.persons import prior_nodes
 from analysis.zero_sum import zero_sum_basis
 
 FloatArray = NDArray[np.float64]
 NODES = 32
-_WIDER = 1.2
-"""Factor on the spread of the nodes: the posterior is wider at some draws than in the middle. Untuned."""
+_WIDER = 1.05
+"""Factor on the spread of the points: what they stand for has wider tails than a normal. Untuned."""
 _STEP = 1e-4
 _MOST_STEPS = 30
 
 
-def log_likelihoods(counts: Counts, model: Model, draws: ThinnedDraws, n_nodes: int = NODES) -> FloatArray:
-    """Log-likelihood of every participant's answers at every draw of the group's parameters.
+@dataclass(frozen=True)
+class Deviations:
+    """Points of one person's deviations with their weights.
+
+    Attributes
+    ----------
+    at : ndarray, shape (draw, node, mode - 1)
+        In the coordinates of ``zero_sum_basis``, in units of ``subject_sd``; none if the model knows no
+        deviations.
+    log_weight : ndarray, shape (draw, node)
+        Log of the likelihood of the person's answers times the density of the deviations in the group, over
+        the density that the points were drawn from.
+    """
+
+    at: FloatArray
+    log_weight: FloatArray
+
+    @property
+    def log_likelihood(self) -> FloatArray:
+        """Of the person's answers, own deviations integrated out: shape (draw,)."""
+        return np.asarray(logsumexp(self.log_weight, axis=1) - np.log(self.log_weight.shape[1]))
+
+
+def deviations(
+    counts: Counts, model: Model, draws: ThinnedDraws, n_nodes: int = NODES
+) -> Iterator[Deviations]:
+    """Deviations of one participant after another, in the order of ``counts.participants``.
 
     Parameters
     ----------
@@ -35,23 +63,47 @@ def log_likelihoods(counts: Counts, model: Model, draws: ThinnedDraws, n_nodes: 
         By participant, also where the model takes them together.
     draws : ThinnedDraws
         Abilities in the order of ``counts.modes``.
-    n_nodes : int
-        A power of two.
-
-    Returns
-    -------
-    ndarray, shape (participant, draw)
     """
     positions = _positions(model, draws)
     everyone = np.arange(len(counts.participants))
     nobody = packed(Problem(_silent(of_people(counts, everyone == 0)), model))
     n_own = len(counts.modes) - 1 if model.hierarchical else 0
-    found = np.empty((len(everyone), len(positions)))
+    prior = _log_densities(positions, np.zeros((len(positions), 1, n_own)), nobody)
+    normal = spread_normal(n_own, n_nodes) if n_own else np.zeros((1, 0))
     for s in everyone:
         own = packed(Problem(of_people(counts, everyone == s), model))
-        nodes = _nodes(positions.mean(axis=0), own, n_own, n_nodes)
-        found[s] = _integrated(positions, nodes.at, nodes.log_density, own, nobody)
-    return found
+        at, log_size = _moved(_laplace(positions, own, n_own), positions, normal)
+        log_weight = _log_densities(positions, at, own) - prior + 0.5 * (normal**2).sum(axis=1)
+        yield Deviations(at, log_weight + log_size[:, None])
+
+
+def log_likelihoods(counts: Counts, model: Model, draws: ThinnedDraws, n_nodes: int = NODES) -> FloatArray:
+    """Log-likelihood of every participant's answers at every draw, own deviations integrated out.
+
+    Takes what ``deviations`` takes.
+
+    Returns
+    -------
+    ndarray, shape (participant, draw)
+    """
+    return np.stack([person.log_likelihood for person in deviations(counts, model, draws, n_nodes)])
+
+
+def spread_normal(n_dim: int, n: int) -> FloatArray:
+    """Points of a standard normal, one in each of ``n`` strips of equal chance, whatever the direction.
+
+    Returns
+    -------
+    ndarray, shape (n, n_dim)
+
+    References
+    ----------
+    McKay, Beckman, Conover 1979, "A comparison of three methods for selecting values of input variables"
+    (Latin hypercube).
+    """
+    rng = np.random.default_rng(1979)
+    strips = rng.permuted(np.tile(np.arange(n), (n_dim, 1)), axis=1)
+    return np.asarray(ndtri((strips.T + 0.5) / n))
 
 
 def of_people(counts: Counts, chosen: NDArray[np.bool_]) -> Counts:
@@ -79,14 +131,6 @@ def _silent(counts: Counts) -> Counts:
     )
 
 
-@dataclass(frozen=True)
-class _Nodes:
-    """Points in a person's own coordinates, shape (node, own), and the log density they were drawn from."""
-
-    at: FloatArray
-    log_density: FloatArray
-
-
 def _positions(model: Model, draws: ThinnedDraws) -> FloatArray:
     """Draws in the sampler's coordinates, shape (draw, n_global): the order of ``engines.density``."""
     columns = [draws.ability @ zero_sum_basis(draws.ability.shape[1])]
@@ -101,10 +145,30 @@ def _positions(model: Model, draws: ThinnedDraws) -> FloatArray:
     return np.ascontiguousarray(np.concatenate(columns, axis=1))
 
 
-def _nodes(middle: FloatArray, data: NDArray[np.int64], n_own: int, n_nodes: int) -> _Nodes:
-    """Quasi-random points about the most likely deviations of one person, at one place of the group's."""
-    if not n_own:
-        return _Nodes(np.zeros((1, 0)), np.zeros(1))
+@dataclass(frozen=True)
+class _Laplace:
+    """The posterior of a person's deviations in the middle of the group's, as a normal distribution.
+
+    Attributes
+    ----------
+    best : ndarray, shape (own,)
+        Most likely deviations.
+    axes : ndarray, shape (own, own)
+        Orthonormal; a column a direction in which they are independent.
+    precision : ndarray, shape (own,)
+        Along the axes; 1 or more, as 1 is what is known before any answer.
+    """
+
+    middle: FloatArray
+    best: FloatArray
+    axes: FloatArray
+    precision: FloatArray
+
+
+def _laplace(positions: FloatArray, data: NDArray[np.int64], n_own: int) -> _Laplace:
+    """Newton's way to the most likely deviations; the density falls off to all sides (it is log-concave in a
+    person's own coordinates), so that it is short."""
+    middle = positions.mean(axis=0)
     x, slope = np.concatenate([middle, np.zeros(n_own)]), np.empty(len(middle) + n_own)
 
     def at(own: FloatArray) -> tuple[float, FloatArray]:
@@ -116,10 +180,8 @@ def _nodes(middle: FloatArray, data: NDArray[np.int64], n_own: int, n_nodes: int
         rows = np.array([at(own - step)[1] - at(own + step)[1] for step in steps]) / (2 * _STEP)
         return np.asarray((rows + rows.T) / 2)
 
-    # The density falls off to all sides (it is log-concave in a person's own coordinates): Newton's way is
-    # short.
     best = np.zeros(n_own)
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MOST_STEPS if n_own else 0):
         value, gradient = at(best)
         step = np.linalg.solve(curvature(best), gradient)
         while at(best + step)[0] < value - _STEP:
@@ -127,27 +189,41 @@ def _nodes(middle: FloatArray, data: NDArray[np.int64], n_own: int, n_nodes: int
         best = best + step
         if np.abs(step).max() < _STEP:
             break
-    spread = _WIDER * np.linalg.inv(np.linalg.cholesky(curvature(best))).T
-    normal = prior_nodes(n_own + 1, n_nodes) @ zero_sum_basis(n_own + 1)
-    log_size = 0.5 * n_own * np.log(2 * np.pi) + np.log(np.abs(np.diag(spread))).sum()
-    return _Nodes(best + normal @ spread.T, -0.5 * (normal**2).sum(axis=1) - log_size)
+    precision, axes = np.linalg.eigh(curvature(best)) if n_own else (np.empty(0), np.empty((0, 0)))
+    return _Laplace(middle, best, axes, np.maximum(precision, 1.0))
+
+
+def _moved(found: _Laplace, positions: FloatArray, normal: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Points of the deviations at every draw, (draw, node, own), and the log of what they spread over.
+
+    With ``d = sd z`` a person's deviations on the scale of abilities, the answers are one observation of
+    ``ability + d`` with precision ``p``. So at other abilities and another sd z is still normal: with
+    precision ``1 + sd^2 p``, about ``sd (p d - p (ability - middle)) / (1 + sd^2 p)``.
+    """
+    n_own = len(found.best)
+    if not n_own:
+        return np.zeros((len(positions), 1, 0)), np.zeros(len(positions))
+    sd, middle_sd = np.exp(positions[:, -1:]), np.exp(found.middle[-1])
+    said = (found.precision - 1.0) / middle_sd**2
+    pull = found.precision * (found.axes.T @ found.best) / middle_sd
+    apart = (positions[:, :n_own] - found.middle[:n_own]) @ found.axes
+    precision = 1.0 + sd**2 * said
+    centre = sd * (pull - said * apart) / precision
+    spread = _WIDER / np.sqrt(precision)
+    at = (centre[:, None] + spread[:, None] * normal) @ found.axes.T
+    return np.ascontiguousarray(at), np.log(spread).sum(axis=1)
 
 
 @compiled()
-def _integrated(positions, nodes, log_nodes, data, nobody):  # type: ignore[no-untyped-def]  # pragma: no cover
-    """Log of the mean over nodes of likelihood times prior over what the nodes were drawn from: (draw,)."""
-    n_draws, n_global = positions.shape
-    n_nodes, n_own = nodes.shape
+def _log_densities(positions, at, data):  # type: ignore[no-untyped-def]  # pragma: no cover
+    """The sampler's log density at every draw's points: (draw, node)."""
+    n_draws, n_nodes, n_own = at.shape
+    n_global = positions.shape[1]
     x, slope = np.zeros(n_global + n_own), np.zeros(n_global + n_own)
-    found, logs = np.empty(n_draws), np.empty(n_nodes)
+    found = np.empty((n_draws, n_nodes))
     for d in range(n_draws):
         x[:n_global] = positions[d]
         for n in range(n_nodes):
-            x[n_global:] = nodes[n]
-            logs[n] = log_density(x, slope, data) - log_nodes[n]
-        top = logs.max()
-        # Without answers, and at no deviation, the density is the group's prior: no part of the likelihood.
-        x[n_global:] = 0.0
-        prior = log_density(x, slope, nobody)
-        found[d] = top + np.log(np.exp(logs - top).mean()) - 0.5 * n_own * np.log(2 * np.pi) - prior
+            x[n_global:] = at[d, n]
+            found[d, n] = log_density(x, slope, data)
     return found

@@ -17,6 +17,7 @@ from analysis.diagnostics import hdi
 from analysis.fit import fit
 from analysis.results import HDI_PROBABILITY, Fit, FitSettings, QuestionFit
 from data.responses import BackgroundTable, ResponseTable, rows_sha256
+from data.study import BackgroundQuestion
 
 Progress = Callable[[int, int, str], None]
 FloatArray = NDArray[np.float64]
@@ -33,8 +34,8 @@ class GroupDifference:
 
     Attributes
     ----------
-    background : str
-        The background question that parts the groups.
+    background, wording : str
+        The background question that parts the groups: its name, and as it was asked.
     first, second : str
         What the people of each group said.
     people_first, people_second : int
@@ -48,6 +49,7 @@ class GroupDifference:
     """
 
     background: str
+    wording: str
     first: str
     second: str
     question: str
@@ -89,7 +91,7 @@ def moderation(
     for asked in background.questions:
         said = {who: background.answers.get(who, {}).get(asked.name, "") for who in people}
         groups = groups_of(asked, {who: answer for who, answer in said.items() if answer})
-        reason = _too_few(asked.name, groups, any(said.values()))
+        reason = _too_few(asked, groups, any(said.values()))
         if groups is None or reason:
             reasons.append(reason)
         else:
@@ -104,7 +106,7 @@ def moderation(
         for one, other in zip(first.questions, second.questions, strict=True):
             own = _differences(groups, one, other)
             if not own:
-                reasons.append(f"{groups.question} on {one.question.name}: {_why(one, other)}.")
+                reasons.append(f"{groups.question} on {one.question.name}: {_why(groups, one, other)}")
             found += own
         tell(done, len(parted), groups.question)
     return Moderation(tuple(found), tuple(reasons))
@@ -131,12 +133,16 @@ def _refusal(table: ResponseTable, fitted: Fit, background: BackgroundTable | No
     return ""
 
 
-def _too_few(name: str, groups: Groups | None, any_said: bool) -> str:
+def _too_few(asked: BackgroundQuestion, groups: Groups | None, any_said: bool) -> str:
+    if not any_said:
+        return f"{asked.name}: nobody answered it."
+    if asked.kind == "text":
+        return f"{asked.name}: it is answered in words of one's own."
     if groups is None:
-        return f"{name}: {'it parts nobody from the others' if any_said else 'nobody answered it'}."
+        return f"{asked.name}: all gave the same answer."
     if min(groups.sizes) < FEWEST_PEOPLE:
-        first, second = groups.sizes
-        return f"{name}: groups of {first} and {second} people are too small; each takes {FEWEST_PEOPLE}."
+        small, large = sorted(groups.sizes)
+        return f"{asked.name}: the groups have {small} and {large} people; each takes {FEWEST_PEOPLE}."
     return ""
 
 
@@ -158,10 +164,11 @@ def _group(table: ResponseTable, groups: Groups, is_second: bool) -> ResponseTab
     return replace(table, rows=rows, sha256=rows_sha256(rows))
 
 
-def _why(one: QuestionFit, other: QuestionFit) -> str:
+def _why(groups: Groups, one: QuestionFit, other: QuestionFit) -> str:
     if min(one.n_participants, other.n_participants) < FEWEST_PEOPLE:
-        return f"{one.n_participants} and {other.n_participants} people answered"
-    return "a group by itself cannot be ranked"
+        return f"{one.n_participants} and {other.n_participants} people answered."
+    who, found = (groups.first, one) if not one.ranked else (groups.second, other)
+    return f"{who} by themselves are not ranked. {found.reason}"
 
 
 def _differences(groups: Groups, one: QuestionFit, other: QuestionFit) -> list[GroupDifference]:
@@ -176,6 +183,7 @@ def _differences(groups: Groups, one: QuestionFit, other: QuestionFit) -> list[G
     return [
         GroupDifference(
             groups.question,
+            groups.wording,
             groups.first,
             groups.second,
             one.question.name,

@@ -1,33 +1,37 @@
 """Each participant's own preferences: what the hierarchical model knows of every person.
 
 The samplers keep the group's parameters alone. Given those, people are independent of each other, so a
-person's own deviations follow from that person's answers: nodes from their prior, weighted by the likelihood
-of the answers (importance sampling, draw by draw).
+person's own deviations follow from that person's answers: at every draw one of the weighted points of
+``marginal.py``.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.answer_shares import answer_probabilities, thinned
+from analysis.answer_shares import ThinnedDraws, thinned
 from analysis.counts import Counts, count_responses
 from analysis.diagnostics import hdi
-from analysis.results import HDI_PROBABILITY, Draws, Fit, QuestionFit
+from analysis.marginal import deviations
+from analysis.model import Model, model_of
+from analysis.results import HDI_PROBABILITY, Fit, QuestionFit
 from analysis.softmax import worth_of
 from analysis.zero_sum import zero_sum_basis
 from data.responses import ResponseTable
 
 FloatArray = NDArray[np.float64]
 
-MOST_MODES = 8
-"""With more modes than these, nodes from the prior cannot cover a person's deviations."""
 MOST_PEOPLE = 60
-"""With more people than these, persons are summed up and not listed."""
-FEWEST_NODES = 8.0
-"""Effective nodes a draw below which a person's worths would rest on too few of them. Untuned."""
-_DRAWS, _NODES = 200, 128
+"""More people than these are drawn from low to high and not one by one."""
+MOST_MODES = 50
+"""With more modes than these too few points would count, and they would take long."""
+POINTS = 16
+FEWEST_POINTS = 4.0
+"""Effective points a draw below which a person's worths would rest on too few of them. Untuned."""
+_FEWEST_DRAWS, _MOST_DRAWS, _MOST_IN_ALL = 100, 400, 120_000
+"""Draws of the group's parameters: fewer for each of many people, as each takes a millisecond for thirty."""
+_NEW_PEOPLE = 128
 
 
 @dataclass(frozen=True)
@@ -84,57 +88,6 @@ def agreements(table: ResponseTable, fit: Fit, seed: int = 2017) -> tuple[Agreem
     return tuple(_agreement(table, fit, question, seed) for question in fit.questions)
 
 
-def prior_nodes(n_modes: int, n: int = _NODES) -> FloatArray:
-    """Points spread as a person's deviations are before any answer: ZeroSumNormal(1) over the modes.
-
-    Returns
-    -------
-    ndarray, shape (n, mode)
-        Scrambled Sobol points (Owen 1998) put through the normal quantile; ``n`` a power of two.
-    """
-    from scipy.special import ndtri
-    from scipy.stats import qmc
-
-    sobol = qmc.Sobol(n_modes - 1, rng=np.random.default_rng(1998))
-    return np.asarray(ndtri(sobol.random(n)) @ zero_sum_basis(n_modes).T)
-
-
-def log_likelihoods(
-    counts: Counts, ability: FloatArray, parameters: Mapping[str, FloatArray], nodes: FloatArray
-) -> FloatArray:
-    """Log-likelihood of every participant's answers, were their deviations each of the nodes.
-
-    Parameters
-    ----------
-    ability : ndarray, shape (draw, mode)
-        In the order of ``counts.modes``.
-    parameters : mapping of str to ndarray, shape (draw,)
-    nodes : ndarray, shape (node, mode)
-
-    Returns
-    -------
-    ndarray, shape (participant, draw, node)
-    """
-    own = own_abilities(ability, parameters, nodes)
-    columns = {name: values[:, None] for name, values in parameters.items()}
-    side = columns.get("side_effect", np.zeros((len(ability), 1)))
-    total = np.zeros((len(counts.participants), *own.shape[:2]))
-    pairs = counts.mode_a * len(counts.modes) + counts.mode_b
-    for pair in np.unique(pairs):
-        a, b = divmod(int(pair), len(counts.modes))
-        chances = answer_probabilities(own[..., a] - own[..., b] + side, columns, counts.levels)
-        logs = np.log(np.maximum(chances, 1e-300))
-        for cell in np.flatnonzero(pairs == pair):
-            total[counts.participant[cell]] += logs @ counts.responses[cell]
-    return total
-
-
-def own_abilities(ability: FloatArray, parameters: Mapping[str, FloatArray], nodes: FloatArray) -> FloatArray:
-    """The group's abilities with a person's deviations: ndarray, shape (draw, node, mode)."""
-    spread = parameters.get("subject_sd", np.zeros(len(ability)))
-    return ability[:, None, :] + spread[:, None, None] * nodes
-
-
 def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int) -> Agreement:
     name, nan = question.question.name, float("nan")
 
@@ -152,16 +105,17 @@ def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int)
         )
         return nothing(f"{why}, so nothing is known of single people's own order.")
     first = max(range(len(fit.modes)), key=lambda k: question.modes[k].p_best)
-    kept = thinned(draws, _DRAWS)
-    prior = own_abilities(kept.ability, kept.parameters, prior_nodes(len(fit.modes)))
-    new_person = float((prior.argmax(axis=-1) == first).mean())
+    counts = count_responses(table, question.question)
+    number = max(_FEWEST_DRAWS, min(_MOST_DRAWS, _MOST_IN_ALL // len(counts.participants)))
+    kept, rng = thinned(draws, number), np.random.default_rng(seed)
+    new_person = _first_of_new_people(kept, first, rng)
     if len(fit.modes) > MOST_MODES:
         reason = f"Each participant's own worths are worked out for at most {MOST_MODES} modes."
         return nothing(reason, fit.modes[first], new_person)
-    counts = count_responses(table, question.question)
-    own, effective = _own_draws(draws, fit.modes, counts, seed)
-    if effective < FEWEST_NODES:
-        reason = "There are so many answers a person that each participant's own worths would be too rough."
+    model = model_of(fit.settings, counts.levels, table.has_participants)
+    own, effective = _own_abilities(kept, fit.modes, counts, model, rng)
+    if effective < FEWEST_POINTS:
+        reason = "Each participant's own worths would rest on too few points to be told."
         return nothing(reason, fit.modes[first], new_person)
     is_first = own.argmax(axis=-1) == first
     shares = is_first.mean(axis=0)
@@ -177,19 +131,35 @@ def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int)
     )
 
 
-def _own_draws(draws: Draws, modes: tuple[str, ...], counts: Counts, seed: int) -> tuple[FloatArray, float]:
-    """Draws of every person's abilities, (person, draw, mode), and the median effective nodes a draw."""
-    kept = thinned(draws, _DRAWS)
-    nodes = prior_nodes(len(modes))
-    sorted_order = [modes.index(mode) for mode in counts.modes]
-    logs = log_likelihoods(counts, kept.ability[:, sorted_order], kept.parameters, nodes[:, sorted_order])
-    weights = np.exp(logs - logs.max(axis=-1, keepdims=True))
-    weights /= weights.sum(axis=-1, keepdims=True)
-    effective = float(np.median(1.0 / (weights**2).sum(axis=-1)))
-    at = np.random.default_rng(seed).random((*weights.shape[:2], 1))
-    chosen = (np.cumsum(weights, axis=-1) < at).sum(axis=-1).clip(max=len(nodes) - 1)
-    spread = kept.parameters["subject_sd"][None, :, None]
-    return kept.ability[None] + spread * nodes[chosen], effective
+def _first_of_new_people(draws: ThinnedDraws, first: int, rng: np.random.Generator) -> float:
+    """Share of people of whom nothing is known whose own first is a certain mode; each draw has its own
+    people."""
+    n_modes = draws.ability.shape[1]
+    found = 0
+    for ability, sd in zip(draws.ability, draws.parameters["subject_sd"], strict=True):
+        z = rng.standard_normal((_NEW_PEOPLE, n_modes - 1)) @ zero_sum_basis(n_modes).T
+        found += int(((ability + sd * z).argmax(axis=1) == first).sum())
+    return found / (len(draws.ability) * _NEW_PEOPLE)
+
+
+def _own_abilities(
+    draws: ThinnedDraws, modes: tuple[str, ...], counts: Counts, model: Model, rng: np.random.Generator
+) -> tuple[FloatArray, float]:
+    """Draws of every participant's abilities, (person, draw, mode), and the median effective points a
+    draw."""
+    place = [modes.index(mode) for mode in counts.modes]
+    in_order = ThinnedDraws(draws.ability[:, place], draws.parameters)
+    sd, every = draws.parameters["subject_sd"][:, None], np.arange(len(draws.ability))
+    own = np.empty((len(counts.participants), *draws.ability.shape))
+    effective = []
+    for s, person in enumerate(deviations(counts, model, in_order, POINTS)):
+        weights = np.exp(person.log_weight - person.log_weight.max(axis=1, keepdims=True))
+        weights /= weights.sum(axis=1, keepdims=True)
+        effective.append(1.0 / (weights**2).sum(axis=1))
+        chosen = (np.cumsum(weights, axis=1) < rng.random((len(every), 1))).sum(axis=1)
+        z = person.at[every, chosen.clip(max=weights.shape[1] - 1)] @ zero_sum_basis(len(modes)).T
+        own[s][:, place] = in_order.ability + sd * z
+    return own, float(np.median(effective))
 
 
 def _person_worths(counts: Counts, modes: tuple[str, ...], own: FloatArray) -> tuple[PersonWorth, ...]:

@@ -33,7 +33,7 @@ class Refits:
     effects : tuple of CovariateEffect
         Worth on metrics, where there are modes enough.
     no_effects : str
-        Why there are none, as a sentence; else empty.
+        Why there are none, as a sentence; empty if there are some, or no laps that could have metrics.
     moderation : Moderation
         Whether people with another background prefer other modes.
     """
@@ -67,8 +67,8 @@ def refits(
     scores = model_scores(table, fitted, tell("Models compared, participants left out"))
     shifts = prior_shifts(table, fitted, tell("Other priors"))
     prompt = _without_laggy(table, fitted, lag, tell)
-    no_effects = covariate_refusal(fitted, metrics)
-    effects = () if no_effects else covariate_effects(fitted, metrics)
+    no_effects = "" if metrics is None else covariate_refusal(fitted, metrics)
+    effects = covariate_effects(fitted, metrics)
     groups = moderation(table, fitted, background, tell("Groups of people"))
     return Refits(scores, shifts, prompt, effects, no_effects, groups)
 

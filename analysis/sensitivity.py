@@ -35,6 +35,8 @@ class PriorShift:
         Under the report's prior.
     worth_then, p_best_then : float
         Under the other one.
+    is_weighted : bool
+        True if the report's draws are weighted, False if the model is fitted again.
     """
 
     question: str
@@ -44,6 +46,7 @@ class PriorShift:
     worth_then: float
     p_best: float
     p_best_then: float
+    is_weighted: bool
 
 
 def prior_shifts(
@@ -58,13 +61,13 @@ def prior_shifts(
             again = fit(table, replace(fitted.settings, prior_sd=scale), _part(tell, k))
             for question, other in zip(fitted.questions, again.questions, strict=True):
                 then = {m.mode: (m.worth_mean, m.p_best) for m in other.modes}
-                shifts += _shifts(question, f"ability ~ ZeroSumNormal({scale:g})", then)
+                shifts += _shifts(question, f"ability ~ ZeroSumNormal({scale:g})", then, False)
     for factor in FACTORS:
         scale = factor * SUBJECT_SD_SCALE
         for question in fitted.questions:
             if question.draws is not None and question.ranked and "subject_sd" in question.draws.parameters:
                 then = _reweighted(question.draws, fitted.modes, scale)
-                shifts += _shifts(question, f"subject_sd ~ HalfNormal({scale:g})", then)
+                shifts += _shifts(question, f"subject_sd ~ HalfNormal({scale:g})", then, True)
     return tuple(shifts)
 
 
@@ -77,7 +80,9 @@ def _part(tell: Progress, k: int) -> Progress:
     return report
 
 
-def _shifts(question: QuestionFit, prior: str, then: dict[str, tuple[float, float]]) -> list[PriorShift]:
+def _shifts(
+    question: QuestionFit, prior: str, then: dict[str, tuple[float, float]], is_weighted: bool
+) -> list[PriorShift]:
     return [
         PriorShift(
             question.question.name,
@@ -87,6 +92,7 @@ def _shifts(question: QuestionFit, prior: str, then: dict[str, tuple[float, floa
             then.get(m.mode, (nan, nan))[0],
             m.p_best,
             then.get(m.mode, (nan, nan))[1],
+            is_weighted,
         )
         for m in question.modes
     ]
@@ -101,4 +107,7 @@ def _reweighted(draws: Draws, modes: tuple[str, ...], scale: float) -> dict[str,
         return {}
     share, worth = np.exp(weights.log), draws.worth.reshape(-1, len(modes))
     is_best = worth.argmax(axis=1)[:, None] == np.arange(len(modes))
-    return {mode: (float(share @ worth[:, k]), float(share @ is_best[:, k])) for k, mode in enumerate(modes)}
+    return {
+        mode: (float(share @ worth[:, k]), min(1.0, float(share @ is_best[:, k])))
+        for k, mode in enumerate(modes)
+    }

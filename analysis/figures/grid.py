@@ -262,6 +262,7 @@ def _write_cells(
 
 def _write_key(figure: "Figure", left: float, top: float, middle: str, darkest: float) -> None:
     """What the shades of cells without numbers mean."""
+    left = max(left, width_px("chance", 8.4) + 8)
     write_text(figure, left - 8, top + 9, "chance", ha="right", fontsize=8.4)
     for k in range(5):
         chance = darkest * (k / 4 if darkest == 1.0 else (k / 4) ** 2)

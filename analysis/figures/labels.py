@@ -1,7 +1,9 @@
 """Names from outside made fit for a drawing: one line, no control characters, short enough."""
 
 import unicodedata
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import lru_cache
 
 LIKELY = 0.8
@@ -64,6 +66,15 @@ def font_families() -> tuple[str, ...]:
     return tuple(name for name in _PREFERRED_FONTS if name in installed)
 
 
+@contextmanager
+def any_sign() -> Iterator[None]:
+    """Names come from files: a sign that no font has is measured and drawn as a box, without a warning."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".*Glyph .* missing from.*")
+        warnings.filterwarnings("ignore", message="Matplotlib currently does not support .* natively")
+        yield
+
+
 @lru_cache(maxsize=4096)
 def width_px(text: str, size_pt: float = 9, bold: bool = False) -> float:
     """Width of a line of text as it will be drawn [CSS px]."""
@@ -71,7 +82,8 @@ def width_px(text: str, size_pt: float = 9, bold: bool = False) -> float:
     from matplotlib.textpath import TextToPath
 
     font = FontProperties(family=list(font_families()), size=size_pt, weight="bold" if bold else "normal")
-    width, _, _ = TextToPath().get_text_width_height_descent(text, font, ismath=False)
+    with any_sign():
+        width, _, _ = TextToPath().get_text_width_height_descent(text, font, ismath=False)
     return float(width) * 96 / 72
 
 

@@ -6,8 +6,10 @@ from math import isnan
 import numpy as np
 
 from analysis.data_quality import DataQuality
+from analysis.diagnostics import shown_ess, shown_rhat
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.lag import LagExclusion, ModeDelay
+from analysis.model import SUBJECT_SD_SCALE
 from analysis.report.findings import Finding, listed
 from analysis.results import Fit, QuestionFit
 from data.responses import ResponseTable
@@ -17,6 +19,8 @@ FEW_PARTICIPANTS = 20
 """Below this the report calls participants few. Untuned: simulated studies of this kind with twenty
 people find the true first place surely in fewer than half of all cases."""
 _DIVIDED = 0.3
+_STRAINED = 2.576
+"""A half-normal distribution has 1 % beyond so many of its scales."""
 _MOST_OF_A_KIND = 3
 UNEQUAL_MS = 10.0
 """Difference between two modes' median input delay that the report warns of [ms]. Untuned."""
@@ -55,6 +59,7 @@ def cautions(
         *_about_the_questions(fit),
         *fit.warnings,
         *_about_people(found),
+        *_about_priors(fit),
         *_about_sides(fit),
         *_about_what_is_left_out(quality.excluded),
         *_about_checks(checks),
@@ -134,12 +139,15 @@ def _about_people(found: Sequence[Finding]) -> list[str]:
         if share is not None and share >= _DIVIDED:
             divided.append((share, f))
     divided.sort(key=lambda pair: -pair[0])
-    return [
+    said = [
         f"People differ: for “{f.label}” about {percent(share)} % would put {isolated(f.rival)} above "
         f"{isolated(f.first)}, although the group does not."
         for share, f in divided[:_MOST_OF_A_KIND]
         if f.reading == "likely"
     ]
+    if said:
+        said[-1] += " A worth is that of someone in the middle of the group, no share of people."
+    return said
 
 
 def _disagreeing(found: Finding) -> float | None:
@@ -154,6 +162,25 @@ def _disagreeing(found: Finding) -> float | None:
     difference = ability[:, names.index(found.first)] - ability[:, names.index(found.rival)]
     tau = question.draws.parameters["subject_sd"].reshape(-1)
     return float(np.mean(ndtr(-difference / (np.sqrt(2) * np.maximum(tau, 1e-12)))))
+
+
+def _about_priors(fit: Fit) -> list[str]:
+    """Where the answers say what the priors hardly allow, so that the priors pull."""
+    strained = []
+    for question in fit.questions:
+        for p in question.parameters:
+            if p.name == "subject_sd" and p.hdi_low > _STRAINED * SUBJECT_SD_SCALE:
+                strained.append((p.mean, question.question.name))
+    said = []
+    if strained:
+        spread, name = max(strained)
+        more = f", as in {len(strained) - 1} more" if len(strained) > 1 else ""
+        said.append(
+            f"In {isolated(name)}{more} people differ by more (a standard deviation of {spread:.1f} logits) "
+            f"than the prior expects, which gives less than 1 % to {_STRAINED * SUBJECT_SD_SCALE:.1f} and "
+            "more. “elbowroom report --full” shows whether that matters."
+        )
+    return said
 
 
 def _about_sides(fit: Fit) -> list[str]:
@@ -210,7 +237,8 @@ def _about_checks(checks: int) -> list[str]:
 def _about_convergence(fit: Fit) -> list[str]:
     if np.isnan(fit.rhat_max):
         return []
-    figures = f"largest R-hat {fit.rhat_max:.3f}, smallest effective sample size {fit.ess_min:,.0f}"
+    ess = shown_ess(fit.ess_min)
+    figures = f"largest R-hat {shown_rhat(fit.rhat_max)}, smallest effective sample size {ess}"
     if fit.settings.engine != "gibbs":
         figures += f", {_divergences(fit)}"
     if fit.converged:

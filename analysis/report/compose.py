@@ -88,8 +88,8 @@ def compose(
                 _known(
                     stuck_section(rates, contrasts, tag),
                     contrasts_section(contrasts, rates),
-                    physics_section(look, fit, tag, table.is_simulated),
-                    *metric_sections(refitted, fit),
+                    physics_section(look, fit, tag, table.is_simulated, refitted is not None),
+                    *metric_sections(refitted, fit, tag),
                     delay_section(quality.delays),
                     exclusion_section(quality.excluded),
                 ),
@@ -280,8 +280,8 @@ def _parameters(fit: Fit, tag: str) -> Section | None:
 def _diagnostics(fit: Fit, tag: str) -> Section:
     drawing = draw_chains(fit.questions, tag)
     caption = (
-        "Ranks of the draws of the quantity that is hardest to sample, chain by chain: flat within the band "
-        "of chance (grey) means that the chains agree."
+        "Ranks of the draws of a quantity that is mostly the hardest to sample, chain by chain: flat within "
+        "the band of chance (grey) means that the chains agree."
         if drawing
         else ""
     )

@@ -7,10 +7,11 @@ from math import exp, isnan, sqrt
 from markupsafe import Markup
 
 from analysis.closer_look import CloserLook
-from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW
+from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, shown_ess, shown_rhat
 from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
 from analysis.figures.labels import LIKELY
 from analysis.fit import LONGER
+from analysis.persons import POINTS
 from analysis.refits import Refits
 from analysis.report.findings import listed
 from analysis.results import Fit
@@ -62,7 +63,7 @@ def methods(
     return (
         *_model(fit),
         Paragraph(_priors(fit)),
-        Paragraph(_reported(study)),
+        Paragraph(_reported(fit, study)),
         Paragraph(_sampling(fit, versions or {})),
         *(Paragraph(text) for text in more if text),
     )
@@ -73,7 +74,8 @@ def _formula(html: str) -> Paragraph:
 
 
 def _model(fit: Fit) -> list[Paragraph]:
-    start = "Each question was analysed on its own with a Bayesian Bradley-Terry model (Bradley & Terry 1952)"
+    what = "Each question was analysed on its own" if len(fit.questions) > 1 else "The answers were analysed"
+    start = f"{what} with a Bayesian Bradley-Terry model (Bradley & Terry 1952)"
     levels = {q.question.levels for q in fit.questions}
     if fit.settings.engine == "gibbs":
         return _gibbs_model(start, levels)
@@ -205,16 +207,17 @@ def _odds(logits: float) -> str:
     return f"{exp(logits):,.0f}" if logits < 12 else "more than 100,000"
 
 
-def _reported(study: Study | None) -> str:
+def _reported(fit: Fit, study: Study | None) -> str:
     paper = study is not None and study.name.startswith("carmichael2017")
     like = ", as in Figure 5 of Carmichael et al. (2017)" if paper else ""
+    several = " Questions are not corrected for being several." if len(fit.questions) > 1 else ""
     return (
         f"Worths lie between 0 and 1 and add up to 1{like}; on a scale of two levels, and for someone who is "
         "like the group, the odds that one mode is chosen over another are the ratio of their worths. "
         "Reported are posterior means with 94 % highest-density credible intervals (and 50 % ones, where "
         "thick lines are drawn). The chance that a mode ranks first, holds a rank or stands above another is "
         "the share of posterior draws in which it does; a first place is called likely from "
-        f"{100 * LIKELY:.0f} % on. Questions are not corrected for being several."
+        f"{100 * LIKELY:.0f} % on.{several}"
     )
 
 
@@ -251,10 +254,13 @@ def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
     )
     if isnan(fit.rhat_max):
         return said
-    diverged = "" if settings.engine == "gibbs" else f", {fit.divergences:,} divergent draws"
+    divergent = f"{fit.divergences:,} divergent draw{'' if fit.divergences == 1 else 's'}"
+    diverged = (
+        "" if settings.engine == "gibbs" else f", with {divergent if fit.divergences else 'none divergent'}"
+    )
     return (
-        f"{said} In this report the largest R-hat is {fit.rhat_max:.3f} and the smallest effective sample "
-        f"size {fit.ess_min:,.0f}{diverged}."
+        f"{said} In this report the largest R-hat is {shown_rhat(fit.rhat_max)} and the smallest effective "
+        f"sample size {shown_ess(fit.ess_min)}{diverged}."
     )
 
 
@@ -270,8 +276,8 @@ def _closer(look: CloserLook | None) -> str:
         )
     if any(a.people for a in look.agreements):
         said.append(
-            "Participants' own abilities were drawn given each draw of the group's parameters: 128 "
-            "quasi-random points of a participant's prior, weighted by that participant's answers."
+            f"Participants' own abilities were drawn given draws of the group's parameters: one of {POINTS} "
+            "points spread about a participant's own posterior, by their importance weights."
         )
     if look.checks:
         said.append(
@@ -324,11 +330,10 @@ def _refits(refitted: Refits | None) -> str:
     if refitted.scores:
         said.append(
             "Models were compared by the log predictive density of participants left out, a participant's "
-            "own "
-            "deviations integrated out (Merkle et al. 2019): from draws weighted by Pareto-smoothed "
-            "importance "
-            "sampling (Vehtari et al. 2024), or, where its k-hat exceeds 0.7, from a fit without the "
-            "participant; standard errors are over participants (Vehtari et al. 2017)."
+            "own deviations integrated out (Merkle et al. 2019): from draws weighted by Pareto-smoothed "
+            "importance sampling (Vehtari et al. 2024), or, where its k-hat exceeds 0.7, from a fit without "
+            "the participant, which has to converge as the report's own has; standard errors are over "
+            "participants (Vehtari et al. 2017)."
         )
     if refitted.shifts:
         said.append(
@@ -339,13 +344,11 @@ def _refits(refitted: Refits | None) -> str:
         said.append(
             "Abilities were regressed on one metric at a time, standardised over the modes, with a residual "
             "for each mode, on the normal approximation of what the answers say of the abilities; a slope "
-            "is an "
-            "association."
+            "is an association."
         )
     if refitted.moderation.differences:
         said.append(
             "Groups of people were compared by fitting the report's model to each group by itself, with "
-            "the same "
-            "priors and nothing shared."
+            "the same priors and nothing shared."
         )
     return " ".join(said)

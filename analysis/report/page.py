@@ -10,6 +10,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from analysis.answer_shares import PairShares
+from analysis.diagnostics import shown_ess, shown_rhat
 from analysis.figures.labels import one_line, percent
 from analysis.figures.style import Drawing
 from analysis.report.findings import Finding, Phrase
@@ -308,7 +309,9 @@ def answers_table(fit: Fit, shares: Sequence[Sequence[PairShares]]) -> Table:
             }[len(cells)]
             rows.append((one_line(question.question.name), one_line(p.mode_i), one_line(p.mode_j), *spread))
     columns = ("Question", "Mode i", "Mode j", "i much", "i", "Same", "j", "j much")
-    return Table(columns, (False, False, False, *([True] * 5)), tuple(rows), "pairwise.csv and strength.csv")
+    has_much = any(question.question.levels == 5 for question in fit.questions)
+    source = "pairwise.csv and strength.csv" if has_much else "pairwise.csv"
+    return Table(columns, (False, False, False, *([True] * 5)), tuple(rows), source).filled
 
 
 def diagnostics_table(fit: Fit) -> Table:
@@ -319,8 +322,8 @@ def diagnostics_table(fit: Fit) -> Table:
             str(q.question.levels),
             f"{q.n:,}",
             f"{q.n_participants:,}" if q.n_participants else "",
-            "" if isnan(q.rhat_max) else f"{q.rhat_max:.3f}",
-            "" if isnan(q.ess_min) else f"{q.ess_min:,.0f}",
+            "" if isnan(q.rhat_max) else shown_rhat(q.rhat_max),
+            "" if isnan(q.ess_min) else shown_ess(q.ess_min),
             f"{q.divergences:,}",
             "ranked" if q.ranked else "not ranked",
         )

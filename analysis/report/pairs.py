@@ -41,9 +41,9 @@ def equivalence_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
     else:
         words.append("No pair is likely equal in practice.")
     counted = [sum(e.reading == r for e in look.equivalences) for r in ("different", "open")]
+    whole = "Over all questions, " if len({e.question for e in look.equivalences}) > 1 else "Of all pairs, "
     words[-1] += (
-        f" Over all questions {counted[0]:,} of {len(look.equivalences):,} pairs are likely different and "
-        f"{counted[1]:,} open."
+        f" {whole}{counted[0]:,} of {len(look.equivalences):,} are likely different and {counted[1]:,} open."
     )
     rows = tuple(
         (
@@ -79,7 +79,7 @@ def equivalence_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
         "Differences of abilities [logit] with 94 % credible intervals, turned so that the mean is not "
         "negative. The grey band is practical equality. Filled dots are likely different (a chance of 80 %), "
         "grey squares likely equal, hollow dots open. On the right the chance, in per cent, that the pair is "
-        "equal in practice."
+        "equal in practice. In the numbers a mode is above another where it leads by more than that."
     )
     return Section("Which differences matter", drawings, "", caption, table, words=tuple(words))
 

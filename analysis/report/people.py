@@ -6,13 +6,15 @@ from math import isnan
 from analysis.closer_look import CloserLook
 from analysis.consistency import CIRCULAR_BY_CHANCE, Consistency
 from analysis.figures.labels import isolated, one_line, percent, percent_in_words
-from analysis.figures.persons import MOST_INTERVALS, draw_persons
+from analysis.figures.persons import MOST_INTERVALS, MOST_MODES, draw_persons
 from analysis.persons import MOST_PEOPLE, Agreement
 from analysis.report.findings import listed
 from analysis.report.page import Section, Table
 from analysis.results import Fit
 
 _MOST_SAID = 6
+_OTHERS = 3
+"""Modes beside the group's first that the table names."""
 
 
 def agreement_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
@@ -31,17 +33,24 @@ def agreement_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
             one_line(a.first),
             f"{percent(a.share_mean)} %",
             *((f"{percent(a.share_hdi_low)} to {percent(a.share_hdi_high)} %",) if people > 1 else ()),
+            _other_firsts(a),
             f"{percent(a.new_person)} %",
         )
         for a in known
     )
     own = ("Own first too", "94 % interval") if people > 1 else ("Chance of own first",)
-    columns = ("Question", "First of the group", *own, "Someone new")
+    columns = ("Question", "First of the group", *own, "Others", "Someone new")
     table = Table(columns, (False, False, *([True] * (len(columns) - 2))), rows, "agreement.csv")
     shown = [q for q, a in zip(fit.questions, look.agreements, strict=True) if a.people]
-    drawings = draw_persons(shown, known, fit.modes, tag) if people <= MOST_PEOPLE else ()
+    drawings = draw_persons(shown, known, fit.modes, tag)
     words = _one_person(known) if people == 1 else _shares_of_people(known, people)
-    dots = "the participant's own" if people == 1 else "a dot for each participant, always in the same order"
+    dots = (
+        "the participant's own"
+        if people == 1
+        else "a dot for each participant, always in the same order"
+        if people <= MOST_PEOPLE
+        else "a dot for each participant, from the lowest worth to the highest"
+    )
     each = " of each" if people > 1 else ""
     below = (
         "the chance that the group's first is this participant's own first"
@@ -52,9 +61,22 @@ def agreement_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
         "Worth of each mode: on the left of each column the group's with its 94 % credible interval, beside "
         f"it {dots}"
         + (f", with the 94 % interval{each}. " if people <= MOST_INTERVALS else ". ")
-        + f"Dotted is no preference. Below: {below}."
+        + f"Dotted is no preference. Below: {below}. In the numbers, “others” are "
+        + ("the next most likely firsts." if people == 1 else "the modes that most of the others have first.")
     )
+    if len(fit.modes) > MOST_MODES:
+        caption += f" Of {len(fit.modes)} modes the {MOST_MODES} with the highest worth are drawn."
     return Section(heading, drawings, "", caption, table, words=(words,))
+
+
+def _other_firsts(found: Agreement) -> str:
+    """The modes that most other people have first, with the expected share of each."""
+    total: dict[str, float] = {}
+    for p in found.people:
+        total[p.mode] = total.get(p.mode, 0.0) + p.p_first
+    people = len({p.participant for p in found.people})
+    others = sorted((-n / people, mode) for mode, n in total.items() if mode != found.first)
+    return ", ".join(f"{one_line(mode)} {percent(-n)} %" for n, mode in others[:_OTHERS])
 
 
 def _someone_new(found: Sequence[Agreement]) -> list[str]:

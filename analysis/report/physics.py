@@ -7,6 +7,7 @@ from analysis.closer_look import CloserLook
 from analysis.covariates import SLOPE_SD, CovariateEffect
 from analysis.figures.association import draw_association
 from analysis.figures.labels import isolated, one_line, percent
+from analysis.figures.slopes import draw_slopes
 from analysis.figures.style import Drawing
 from analysis.report.findings import listed
 from analysis.report.page import Section, Table
@@ -18,9 +19,11 @@ _PRIOR_REACH = 1.88 * SLOPE_SD
 """94 % of the prior of a slope lies within [logit]."""
 
 
-def physics_section(look: CloserLook, fit: Fit, tag: str, simulated: bool) -> Section | None:
-    """Pictures always, words of association, and why there is no model of worth on metrics where there is
-    none."""
+def physics_section(
+    look: CloserLook, fit: Fit, tag: str, simulated: bool, is_full: bool = False
+) -> Section | None:
+    """Pictures always, words of association, and where a model of worth on metrics is; a full report has its
+    own section on that."""
     if not look.measures:
         return None
     known = [m for m in MEASURES if any(x.metric == m.name for x in look.measures)]
@@ -35,12 +38,13 @@ def physics_section(look: CloserLook, fit: Fit, tag: str, simulated: bool) -> Se
         "things that the mode changes go with it. In a comparison, too, a metric differs mostly because the "
         "two modes do, so that both views rest on the same few modes."
     )
-    words.append(
-        f"No model of worth on metrics is fitted: with {len(fit.modes)} modes a line goes through their "
-        f"worths whatever they are; it takes {FEWEST_MODES} modes."
-        if len(fit.modes) < FEWEST_MODES
-        else "A full report (elbowroom report --full) has a model of worth on each metric too."
-    )
+    if not is_full:
+        words.append(
+            f"No model of worth on metrics is fitted: with {len(fit.modes)} modes a line goes through their "
+            f"worths whatever they are; it takes {FEWEST_MODES} modes."
+            if len(fit.modes) < FEWEST_MODES
+            else "A full report (elbowroom report --full) has a model of worth on each metric too."
+        )
     rows = tuple(
         (
             one_line(a.question),
@@ -66,8 +70,9 @@ def physics_section(look: CloserLook, fit: Fit, tag: str, simulated: bool) -> Se
     return Section("Preference meets physics", drawings, "", caption, table, words=tuple(words))
 
 
-def effects_section(effects: tuple[CovariateEffect, ...], reason: str, n_modes: int) -> Section:
+def effects_section(effects: tuple[CovariateEffect, ...], reason: str, fit: Fit, tag: str) -> Section:
     """Ability on metrics, or why there is no such model."""
+    n_modes = len(fit.modes)
     heading = "Worth on metrics"
     if not effects:
         return Section(heading, (), "", "", None, words=(reason,))
@@ -97,7 +102,13 @@ def effects_section(effects: tuple[CovariateEffect, ...], reason: str, n_modes: 
     )
     columns = ("Question", "Metric", "One sd is", "Slope [logit]", "Above 0", "Left over [logit]")
     table = Table(columns, (False, False, True, True, True, True), rows, "covariates.csv")
-    return Section(heading, (), "", "", table, words=words)
+    drawings = draw_slopes([q.question for q in fit.questions], effects, _WORDS, _PRIOR_REACH, tag)
+    caption = (
+        "How much ability goes with one standard deviation more of a metric, with 94 % credible intervals. "
+        "Filled: the interval leaves out 0. Dotted: the interval before any answer; the closer a line comes "
+        "to it, the less the answers say."
+    )
+    return Section(heading, drawings, "", caption, table, words=words)
 
 
 def _narrowed(effects: tuple[CovariateEffect, ...]) -> str:
@@ -106,8 +117,7 @@ def _narrowed(effects: tuple[CovariateEffect, ...]) -> str:
 
 
 def _slopes_said(effects: tuple[CovariateEffect, ...]) -> str:
-    clear = [e for e in effects if not e.slope_hdi_low <= 0 <= e.slope_hdi_high]
-    clear = sorted(clear, key=lambda e: -abs(e.slope_mean))
+    clear = sorted((e for e in effects if e.is_clear), key=lambda e: -abs(e.slope_mean))
     if not clear:
         return f"None of {len(effects):,} slopes is told apart from 0."
     said = [

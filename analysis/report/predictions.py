@@ -11,7 +11,12 @@ from analysis.report.page import Section, Table
 from analysis.results import Fit
 
 _MOST_SAID = 6
-_CHECKED = {"wins": "share for ", "ties": "share of ties", "level": "share of ", "spread": "people apart"}
+_CHECKED = {
+    "wins": "answers for ",
+    "ties": "share of ties",
+    "level": "share of ",
+    "spread": "people apart",
+}
 
 
 def predictive_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:

@@ -1,5 +1,6 @@
 """Worth on a metric: a planted slope is found, and too few modes are refused."""
 
+import re
 import warnings
 from dataclasses import replace
 
@@ -92,13 +93,17 @@ def test_slope_and_residual_are_those_of_the_model_integrated_by_brute_force():
 
 
 def test_the_section_says_association_units_and_how_few_points_there_are(planted):
-    section = effects_section(covariate_effects(planted, laps(6)), "", 6)
+    effects = covariate_effects(planted, laps(6))
+    section = effects_section(effects, "", planted, "")
     said = " ".join(section.words)
     assert "association" in said
     assert "6 points" in said
     assert "weakly identified" in said
     assert "less force at the edge with a higher place on Q1" in said
     assert section.table.rows[0][2] == "4 N"
+    (drawing,) = section.drawings
+    assert f"Q1, force at the edge: {effects[0].slope_mean:+.2f}" in drawing.alt
+    assert "force at the edge" in re.findall(r">([^<>]+)</text>", drawing.svg)
 
 
 def test_three_modes_are_refused_in_a_line_and_without_numbers(planted, simulated):
@@ -106,7 +111,7 @@ def test_three_modes_are_refused_in_a_line_and_without_numbers(planted, simulate
     refused = covariate_refusal(three, laps(3))
     assert refused.startswith("With 3 modes a line goes through their worths whatever they are")
     assert covariate_effects(three, laps(3)) == ()
-    assert effects_section((), refused, 3).words == (refused,)
+    assert effects_section((), refused, three, "").words == (refused,)
 
 
 def test_without_a_metric_of_every_mode_there_is_no_slope(planted):

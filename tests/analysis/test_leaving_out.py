@@ -6,17 +6,20 @@ import numpy as np
 import pytest
 from scipy.special import logsumexp
 
-from analysis import marginal, persons
-from analysis.answer_shares import thinned
+from analysis.answer_shares import ThinnedDraws, answer_probabilities, thinned
 from analysis.calibration.world import Design, draw_answers
 from analysis.calibration.world import Truth as LinkTruth
-from analysis.counts import count_responses
+from analysis.counts import Counts, count_responses
+from analysis.engines import fast
 from analysis.fit import fit
 from analysis.leaving_out import _pointwise, left_out, model_scores
+from analysis.marginal import log_likelihoods
 from analysis.model import Model, model_of
 from analysis.pareto import smoothed
-from analysis.persons import prior_nodes
+from analysis.refits import Refits
+from analysis.report.refitted import refit_sections
 from analysis.results import FitSettings
+from analysis.zero_sum import zero_sum_basis
 
 SETTINGS = FitSettings(draws=1000, tune=500, chains=2)
 
@@ -33,28 +36,107 @@ def scored(table_of, answers_of, truth):
     return score
 
 
+def on_a_grid(counts: Counts, draws: ThinnedDraws) -> np.ndarray:
+    """Log-likelihood of each participant's answers about three modes by the plain formulas, deviations
+    summed over a grid of their prior: (participant, draw)."""
+    at, weight = np.polynomial.hermite_e.hermegauss(60)
+    across, up = np.meshgrid(at, at)
+    nodes = np.stack([across.ravel(), up.ravel()], axis=1) @ zero_sum_basis(3).T
+    log_weights = np.log(np.outer(weight, weight) / weight.sum() ** 2).ravel()
+    spread = draws.parameters.get("subject_sd", np.zeros(len(draws.ability)))
+    own = draws.ability[:, None] + spread[:, None, None] * nodes
+    columns = {name: values[:, None] for name, values in draws.parameters.items()}
+    total = np.zeros((len(counts.participants), *own.shape[:2]))
+    for s, a, b, said in zip(counts.participant, counts.mode_a, counts.mode_b, counts.responses, strict=True):
+        eta = own[..., a] - own[..., b] + columns["side_effect"]
+        total[s] += np.log(answer_probabilities(eta, columns, counts.levels)) @ said
+    return logsumexp(total + log_weights, axis=2)
+
+
 def test_weighted_draws_score_a_person_as_a_fit_without_that_person_does(simulated):
     table = simulated(3, participants=8)
     fitted = fit(table, FitSettings())
-    counts = count_responses(table, table.questions[0])
-    model = model_of(fitted.settings, 3, has_participants=True)
-    found = _pointwise(counts, fitted.settings, fitted.questions[0].draws, fitted.modes)
-    brute = [left_out(counts, person, model, fitted.settings) for person in range(8)]
+    found = _pointwise(table, fitted.settings, fitted.questions[0])
+    brute = [left_out(table, person, fitted.settings) for person in range(8)]
     assert found.refitted < 3
     assert found.values == pytest.approx(brute, abs=0.3)
     assert np.abs(found.values - brute).mean() < 0.1
 
 
 @pytest.mark.parametrize("pooled", [False, True])
-def test_own_deviations_are_integrated_out_as_a_sum_over_the_prior_does(simulated, pooled):
+def test_own_deviations_are_integrated_out_as_a_sum_over_a_grid_does(simulated, pooled):
     table = simulated(5, participants=3)
     fitted = fit(table, replace(SETTINGS, pooled=pooled))
     counts, draws = count_responses(table, table.questions[0]), thinned(fitted.questions[0].draws, 20)
     model = model_of(fitted.settings, 5, has_participants=True)
-    nodes = np.zeros((1, 3)) if pooled else prior_nodes(3, 4096)
-    plain = persons.log_likelihoods(counts, draws.ability, draws.parameters, nodes)
-    expected = logsumexp(plain, axis=2) - np.log(len(nodes))
-    assert marginal.log_likelihoods(counts, model, draws) == pytest.approx(expected, abs=0.1)
+    found = log_likelihoods(counts, model, draws) - on_a_grid(counts, draws)
+    assert np.abs(found).max() < 0.06
+    assert np.sqrt((found**2).mean()) < 0.02
+
+
+def test_many_answers_of_many_modes_are_integrated_out_by_few_points(answers_of, table_of, truth):
+    planted = replace(truth, ability=tuple(np.linspace(-1, 1, 8)), subject_sd=1.5)
+    table = table_of(answers_of(planted, levels=5, participants=4, repetitions=3), levels=5)
+    fitted = fit(table, SETTINGS)
+    counts, draws = count_responses(table, table.questions[0]), thinned(fitted.questions[0].draws, 20)
+    model = model_of(fitted.settings, 5, has_participants=True)
+    few, many = (log_likelihoods(counts, model, draws, n) for n in (32, 4096))
+    assert np.sqrt(((few - many) ** 2).mean()) < 0.1
+
+
+@pytest.fixture
+def one_odd_person(answers_of, table_of, truth):
+    """Seven people alike and one who always says the opposite, so that a fit is asked for without them."""
+    rows = answers_of(replace(truth, ability=(2.0, -2.0, 0.0), subject_sd=0.1), levels=2, participants=8)
+    turned = rows["response"].map({"A>B": "B>A", "B>A": "A>B"})
+    rows["response"] = rows["response"].where(rows["participant"] != "p000", turned)
+    return table_of(rows, levels=2)
+
+
+def test_a_fit_without_a_person_that_does_not_converge_gives_no_score_and_is_told(
+    one_odd_person, monkeypatch
+):
+    table, sample = one_odd_person, fast.sample
+    fitted = fit(table, SETTINGS)
+    people = len(count_responses(table, table.questions[0]).participants)
+
+    def stuck_without_a_person(problems, settings, done=lambda k: None):
+        draws = sample(problems, settings, done)
+        for problem, d in zip(problems, draws, strict=True):
+            if 1 < len(problem.counts.participants) < people:
+                d.ability[0] += np.array([1.0, -1.0, 0.0])
+        return draws
+
+    monkeypatch.setattr(fast, "sample", stuck_without_a_person)
+    scores = {s.model: s for s in model_scores(table, fitted)}
+    assert scores["as reported"].refitted
+    assert np.isnan(scores["as reported"].elpd)
+    assert "no ranking from the fit without a participant" in scores["as reported"].missing
+    assert scores["people alike"].reading == "not scored"
+    (section,) = [s for s in refit_sections(Refits(tuple(scores.values()), (), None, (), "", None)) if s]
+    said = " ".join(section.words)
+    assert "No score: Q1, “as reported”: no ranking from the fit without a participant" in said
+    assert "told apart" not in said
+    assert "nan" not in " ".join(cell for row in section.table.rows for cell in row)
+
+
+def test_a_model_that_does_not_converge_has_no_score_and_is_told(simulated, monkeypatch):
+    table, sample = simulated(2, participants=4), fast.sample
+    fitted = fit(table, SETTINGS)
+
+    def stuck_when_pooled(problems, settings, done=lambda k: None):
+        draws = sample(problems, settings, done)
+        for d in draws:
+            d.ability[0] += 5.0 * np.array([1.0, -1.0, 0.0]) * ("subject_sd" not in d.parameters)
+        return draws
+
+    monkeypatch.setattr(fast, "sample", stuck_when_pooled)
+    scores = {s.model: s for s in model_scores(table, fitted)}
+    assert (scores["people alike"].reading, scores["people alike"].missing) == (
+        "not scored",
+        "the model did not converge",
+    )
+    assert scores["without a side effect"].reading == "not told apart"
 
 
 def test_a_planted_side_effect_is_missed_by_a_model_without_one(scored):

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from analysis.background_groups import groups_of
+from analysis.engines import fast
 from analysis.fit import fit
 from analysis.moderation import moderation
 from analysis.report.moderated import moderation_section
@@ -53,7 +55,8 @@ def test_groups_that_prefer_alike_are_not_told_apart(case):
     assert not any(d.is_clear for d in found.differences)
     section = moderation_section(found, fitted, "")
     said = " ".join(section.words)
-    assert "None of 3 differences is told apart from 0" in said
+    assert "None of 3 differences of worth is told apart from 0" in said
+    assert "robots (“Before?”): “Never” (6 people) and “Once” or “Often” (6)." in said
     assert "That is not to say that the groups agree" in said
     assert "need not come from it" in said
     assert [d.name for d in section.drawings] == ["groups"]
@@ -64,7 +67,41 @@ def test_whoever_said_nothing_is_in_no_group_and_small_groups_are_refused(case):
     few = {who: said for who, said in background.answers.items() if who != "g1p000" and who != "g1p001"}
     found = moderation(table, fitted, BackgroundTable((ROBOTS,), few))
     assert found.differences == ()
-    assert found.reasons == ("robots: groups of 6 and 4 people are too small; each takes 5.",)
+    assert found.reasons == ("robots: the groups have 4 and 6 people; each takes 5.",)
+    job = BackgroundQuestion(name="job", wording="Your job?", kind="text")
+    words = {who: {"job": "nurse", "robots": "Never"} for who in background.answers}
+    assert moderation(table, fitted, BackgroundTable((job, ROBOTS, AGE), words)).reasons == (
+        "job: it is answered in words of one's own.",
+        "robots: all gave the same answer.",
+        "age: nobody answered it.",
+    )
+
+
+def test_a_group_whose_sampling_does_not_converge_is_not_compared_and_that_is_told(case, monkeypatch):
+    table, fitted, background = case(turned=True)
+    sample = fast.sample
+
+    def stuck_for_those_who_did(problems, settings, done=lambda k: None):
+        draws = sample(problems, settings, done)
+        for problem, d in zip(problems, draws, strict=True):
+            d.ability[0] += problem.counts.participants[0].startswith("g1") * np.array([1.0, -1.0, 0.0])
+        return draws
+
+    monkeypatch.setattr(fast, "sample", stuck_for_those_who_did)
+    found = moderation(table, fitted, background)
+    assert found.differences == ()
+    (reason,) = found.reasons
+    assert reason.startswith(
+        "robots on Q1: “Once” or “Often” by themselves are not ranked. The sampling did not"
+    )
+
+
+def test_those_who_did_not_say_are_counted(case):
+    table, fitted, background = case(turned=True)
+    few = {who: said for who, said in background.answers.items() if who != "g1p000"}
+    section = moderation_section(moderation(table, fitted, BackgroundTable((ROBOTS,), few)), fitted, "")
+    assert "“Once” or “Often” (5); 1 did not say." in section.words[0]
+    assert section.words[1].startswith("2 of 3 differences of worth leave out 0, the largest first: M")
 
 
 def test_why_there_are_no_groups_is_said_in_a_line(case):

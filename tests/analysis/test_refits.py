@@ -55,8 +55,9 @@ def test_laggy_comparisons_are_left_out_and_what_that_changes_is_told(case):
     assert "Without laggy comparisons" in stages
     assert found.scores[0].model == "as reported"
     assert {s.prior for s in found.shifts} >= {"ability ~ ZeroSumNormal(2)", "subject_sd ~ HalfNormal(2)"}
-    (metrics,) = metric_sections(found, fitted)
-    assert metrics.words[0].startswith("With 3 modes")
+    assert metric_sections(found, fitted, "") == []
+    (metrics,) = metric_sections(replace(found, no_effects="With 3 modes it is so."), fitted, "")
+    assert metrics.words == ("With 3 modes it is so.",)
     (people,) = people_sections(found, fitted, "")
     assert "came without what participants said" in people.words[0]
     headings = [section.heading for section in refit_sections(found) if section is not None]
@@ -72,4 +73,6 @@ def test_where_every_comparison_is_laggy_there_is_no_change_to_show(case):
 
 
 def test_a_report_that_is_not_full_has_none_of_these_sections(case):
-    assert refit_sections(None) == metric_sections(None, case[1]) == people_sections(None, case[1], "") == []
+    assert (
+        refit_sections(None) == metric_sections(None, case[1], "") == people_sections(None, case[1], "") == []
+    )

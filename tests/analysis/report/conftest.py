@@ -16,7 +16,7 @@ from data.answers import SCALES
 from data.responses import QuestionScale, ResponseTable, StuckTable
 from data.study_file import read_study
 
-QUICK = FitSettings(draws=400, tune=300, chains=2)
+QUICK = FitSettings(draws=600, tune=300, chains=2)
 HOSTILE_MODES = (
     'comma, "quote" and a name of sixty characters, no one knows why',
     "=cmd|' /C calc'!A0",

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from analysis.figures.persons import MOST_MODES
 from analysis.figures.ranks import draw_ranks
 from analysis.fit import fit
 from analysis.persons import agreements
@@ -105,9 +106,21 @@ def agreement_section_of(case):
     return agreement_section(closer_look(case.table, case.fit), case.fit, "")
 
 
-def test_with_many_modes_a_new_persons_first_is_still_told(many_case):
+def test_of_many_modes_those_with_the_highest_worth_are_drawn_for_each_participant(many_case):
+    section = agreement_section_of(many_case)
+    (drawing,) = section.drawings
+    texts = re.findall(r">([^<>]+)</text>", drawing.svg)
+    by_worth = sorted(many_case.fit.questions[0].modes, key=lambda m: -m.worth_mean)
+    assert {m.mode for m in by_worth[:MOST_MODES]} <= set(texts)
+    assert not {m.mode for m in by_worth[MOST_MODES:]} & set(texts)
+    assert f"the {MOST_MODES} with the highest worth are drawn" in section.caption
+
+
+def test_with_too_many_modes_a_new_persons_first_is_still_told(many_case, monkeypatch):
+    monkeypatch.setattr("analysis.persons.MOST_MODES", 9)
     (agreement,) = agreements(many_case.table, many_case.fit)
     assert not agreement.people
+    assert "at most 9 modes" in agreement.reason
     assert agreement.first == max(many_case.fit.questions[0].modes, key=lambda m: m.p_best).mode
     assert 0 < agreement.new_person < 1
 

@@ -164,3 +164,17 @@ def test_a_robot_that_never_got_stuck_is_said_to_with_the_number_of_comparisons(
     rates = tuple(replace(r, stuck=0) for r in stuck_rates(study_case.stuck))
     said = "".join(phrase.text for phrase in lead((), rates, ""))
     assert said == "The robot never got stuck, in 24 comparisons with each mode."
+
+
+def test_people_who_differ_more_than_the_prior_expects_are_pointed_out(study_case):
+    def said(low):
+        question = study_case.fit.questions[0]
+        parameters = tuple(
+            replace(p, mean=4.2, hdi_low=low, hdi_high=4.6) if p.name == "subject_sd" else p
+            for p in question.parameters
+        )
+        fit = replace(study_case.fit, questions=(replace(question, parameters=parameters),))
+        return " ".join(cautions(study_case.table, fit, findings(fit), None, 0))
+
+    assert "In Q2 people differ by more (a standard deviation of 4.2 logits) than the prior" in said(3.8)
+    assert "than the prior expects" not in said(2.5)
