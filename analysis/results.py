@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
@@ -19,10 +20,10 @@ Link = Literal["cumulative", "adjacent"]
 HDI_PROBABILITY = 0.94
 """Mass of every interval that is not named otherwise."""
 
-MANY_DIMENSIONS = 10_000
-"""Free coordinates from which on the sampler takes bolder steps, as with 1000 people and 11 modes."""
-ACCEPTANCE_IN_MANY = 0.65 / 0.8
-"""By how much the acceptance rate is lowered there: half as many steps a draw."""
+FEW_DIMENSIONS, MANY_DIMENSIONS = 100, 10_000
+"""Free coordinates: of 30 people and three modes, and of 1000 people and 11 modes."""
+ACCEPTANCE_IN_MANY = 0.65 / 0.9
+"""By how much the acceptance rate is lowered in many: to what costs least as the dimension grows."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +45,7 @@ class FitSettings:
     draws, tune, chains : int
         Kept and warm-up draws a chain, and chains.
     target_accept : float
-        Acceptance rate that NUTS adapts its step size to, with fewer than ``MANY_DIMENSIONS`` free
-        coordinates; see ``acceptance``.
+        Acceptance rate that NUTS adapts its step size to with few free coordinates; see ``acceptance``.
     """
 
     engine: Engine = "fast"
@@ -57,17 +57,21 @@ class FitSettings:
     draws: int = 1000
     tune: int = 500
     chains: int = 4
-    target_accept: float = 0.8
+    target_accept: float = 0.9
 
     def acceptance(self, n_dim: int) -> float:
-        """Acceptance rate to adapt to in so many dimensions: lower in many, ``target_accept`` in few.
+        """Acceptance rate to adapt to in so many dimensions, lower by their logarithm from few to many.
+
+        In few, cautious steps cost little, and a spread near zero, where a few people leave it, needs them.
+        In many, bold ones are worth more.
 
         References
         ----------
         Beskos, Pillai, Roberts, Sanz-Serna, Stuart 2013, "Optimal tuning of the hybrid Monte Carlo
-        algorithm": 0.651 costs least as the dimension grows. With few, cautious steps are cheap.
+        algorithm" (0.651).
         """
-        return self.target_accept * (ACCEPTANCE_IN_MANY if n_dim >= MANY_DIMENSIONS else 1.0)
+        way = math.log(n_dim / FEW_DIMENSIONS) / math.log(MANY_DIMENSIONS / FEW_DIMENSIONS)
+        return self.target_accept * (1.0 - min(max(way, 0.0), 1.0) * (1.0 - ACCEPTANCE_IN_MANY))
 
 
 @dataclass(frozen=True)

@@ -200,7 +200,7 @@ def _draw_panel(
             shown = fitted(label, head - 32, small)
             write_text(
                 figure,
-                x + small * 0.45,
+                x + small * 0.13,  # the centre of a line has room for letters that hang below it
                 top + head - 6,
                 shown,
                 rotation=90,

@@ -57,7 +57,7 @@ def draw_slopes(
                 name = fitted(words.get(metric, metric), _LABEL_PX - 10)
                 y = _HEAD_PX + _ROW_PX * (row + 0.5) + 4
                 write_text(figure, _LABEL_PX - 8, y, name, ha="right", color=INK)
-            below = _HEAD_PX + height + 17
+            below = _HEAD_PX + height + 14
             write_text(figure, _LABEL_PX - 8, below, "slope [logit]", ha="right", fontsize=8.4)
             width = min(240.0, (WIDTH_PX - _LABEL_PX) / len(part) - _GAP_PX)
             for column, question in enumerate(part):

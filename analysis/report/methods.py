@@ -241,7 +241,7 @@ def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
     }[settings.engine]
     if settings.engine == "fast" and any(q.hierarchical for q in fit.questions):
         how += ", each participant centred by how much their answers say (Papaspiliopoulos et al. 2007)"
-    accept = "" if settings.engine == "gibbs" else f", target acceptance {_acceptance(fit):g}"
+    accept = "" if settings.engine == "gibbs" else f", target acceptance {_acceptance(fit):.2g}"
     software = f" Elbowroom {versions['elbowroom']}" if "elbowroom" in versions else " Elbowroom"
     used = [f"{n} {versions[n]}" for n in ("nutpie", "pymc") if n in versions and settings.engine != "gibbs"]
     said = (
