@@ -31,12 +31,13 @@ STEEPNESS = 4
 """``c = t^4 / (1 + t^4)`` in the direction least known: half centred at t = 1. Steeper than
 ``t / (1 + t)`` of a known sd, as a spread that may be zero punishes centring more. Untuned beyond that."""
 SPREAD_KNOWN = 30.0
-"""Information on the log of the spread at which it counts as half known: an error of a fifth."""
+"""Information on the log of the spread at which it counts as half known: an error of a fifth. Untuned."""
 _MOST_MODES = 100
 """With more modes the direction least known is not sought: hardly anybody answers on thousands of pairs."""
 _PROBES = 8
-"""Directions in which information is looked at, if there are as many."""
+"""Directions in which information is looked at, if there are as many. Untuned."""
 _STEP = 1e-3
+"""Step of a finite difference in a deviation [logit]."""
 
 Floats = NDArray[np.float64]
 

@@ -232,7 +232,7 @@ def test_the_diagnostics_of_a_question_are_the_worst_of_what_it_reports(simulate
 def test_the_sampler_takes_bolder_steps_the_more_dimensions_there_are():
     settings = FitSettings()
     assert settings.acceptance(3) == settings.acceptance(100) == settings.target_accept == 0.9
-    assert settings.acceptance(1_000) == pytest.approx(0.775)
+    assert settings.acceptance(101) == settings.acceptance(9_999) == pytest.approx(0.8)
     assert settings.acceptance(10_000) == settings.acceptance(10**6) == pytest.approx(0.65)
     cautious = replace(settings, target_accept=0.95)
     assert cautious.acceptance(10_000) > settings.acceptance(10_000)
