@@ -2,13 +2,22 @@
 
 from typing import Literal, get_args
 
-Answer = Literal["A>>B", "A>B", "A=B", "B>A", "B>>A"]
+Answer = Literal["A>>>>B", "A>>>B", "A>>B", "A>B", "A=B", "B>A", "B>>A", "B>>>A", "B>>>>A"]
 ANSWERS: tuple[Answer, ...] = get_args(Answer)
+"""The answers of the widest scale. A longer arrow is a stronger preference."""
+
+FEWEST_LEVELS, MOST_LEVELS = 2, len(ANSWERS)
+
+
+def _scale(levels: int) -> tuple[Answer, ...]:
+    """The middle of the widest scale; an even number of levels has no ``A=B``."""
+    middle, arrows = len(ANSWERS) // 2, levels // 2
+    tie = ANSWERS[middle : middle + levels % 2]
+    return ANSWERS[middle - arrows : middle] + tie + ANSWERS[middle + 1 : middle + 1 + arrows]
+
 
 SCALES: dict[int, tuple[Answer, ...]] = {
-    2: ("A>B", "B>A"),
-    3: ("A>B", "A=B", "B>A"),
-    5: ANSWERS,
+    levels: _scale(levels) for levels in range(FEWEST_LEVELS, MOST_LEVELS + 1)
 }
 """The answers of a scale by its number of levels, in the order A much .. B much."""
 
@@ -17,7 +26,10 @@ MIRRORED: dict[Answer, Answer] = dict(zip(ANSWERS, reversed(ANSWERS), strict=Tru
 
 
 def inferred_levels(answers: set[str]) -> int:
-    """Levels of a scale known only by the answers given on it: any ``>>`` 5, any tie 3, else 2."""
-    if answers & {"A>>B", "B>>A"}:
-        return 5
-    return 3 if "A=B" in answers else 2
+    """Levels of a scale known only by the answers given on it.
+
+    A longest arrow of ``k`` signs means ``2 k + 1`` levels, or 2 where no arrow is longer than one sign and
+    no answer is a tie. Scales of 4, 6 and 8 levels cannot be inferred.
+    """
+    longest = max((answer.count(">") for answer in answers), default=0)
+    return 2 if longest == 1 and "A=B" not in answers else max(3, 2 * longest + 1)

@@ -8,7 +8,7 @@ from sqlalchemy import Column as SqlColumn
 from sqlalchemy import Table
 from sqlalchemy.types import Boolean, Integer
 
-from data.answers import ANSWERS
+from data.answers import SCALES
 from data.store import tables
 from data.store.tables import Real, UtcTime
 from data.study import Study
@@ -120,7 +120,7 @@ def sheets_of(
                 Field("question", "Name of the question", "string", valid=questions),
                 Field("mode_a", "Mode shown as A", "string", valid=study.mode_names),
                 Field("mode_b", "Mode shown as B", "string", valid=study.mode_names),
-                Field("response", "Which of A and B, and how much", "string", valid=ANSWERS),
+                Field("response", "Which of A and B, and how much", "string", valid=SCALES[5]),
                 Field("count", "How many responses the row stands for", "integer"),
                 Field("comparison", "The comparison that was judged", "string"),
                 Field("repetition", "Which showing of the pair it was; 0 for a check", "integer"),

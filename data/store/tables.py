@@ -30,7 +30,7 @@ from sqlalchemy import (
 )
 from sqlalchemy.types import TypeDecorator, TypeEngine
 
-from data.answers import ANSWERS
+from data.answers import SCALES
 from data.records import Device, EventKind, Outcome, Slot, Source, TrialSource
 
 metadata = MetaData(
@@ -256,7 +256,7 @@ responses = Table(
     metadata,
     _of("comparison", "comparisons.id", "The comparison that was judged", primary_key=True),
     _column("question", String(40), "Name of the question", primary_key=True),
-    _choice("answer", ANSWERS, "Which of A and B, and how much"),
+    _choice("answer", SCALES[5], "Which of A and B, and how much"),
     _column("answered_at", UtcTime, "When it was submitted", unit="UTC"),
 )
 

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from data import csv_file
-from data.answers import ANSWERS
+from data.answers import ANSWERS, SCALES, inferred_levels
 from data.errors import InputError
 from data.response_csv import read_response_csv
 
@@ -64,7 +64,7 @@ def outcome(path: Path) -> tuple[int, str]:
         (f"{HEADER}\nM1,M2\n", "line 2: 2 cells, but the header has 3 columns"),
         (f"{HEADER}\nM1,M2,A>B\nM1,M2,A>B,\n", "line 3: 4 cells, but the header has 3 columns"),
         (f"{HEADER}\nM1,M2,A>B\nM1\n", "line 3: 1 cell, but the header has 3 columns"),
-        (f"{HEADER}\nM1,M2,A>C\n", "line 2, response: 'A>C' is not one of: A>>B, A>B, A=B, B>A, B>>A"),
+        (f"{HEADER}\nM1,M2,A>C\n", "line 2, response: 'A>C' is not one of: A>>>>B, A>>>B, A>>B, A>B"),
         (f"{HEADER}\nM1,M2,a>b\n", "line 2, response: 'a>b' is not one of"),
         (f"{HEADER}\nM1,M2, A>B\n", "line 2, response: ' A>B' is not one of"),
         (f"{HEADER}\nM1,M2,\n", "line 2, response: empty, but a value is needed"),
@@ -286,3 +286,24 @@ def test_the_fast_reader_reports_the_same_errors(tmp_path, monkeypatch, bad):
     monkeypatch.setattr(csv_file, "LARGE", 1)
     assert error_of(path) == careful
     assert careful.startswith("line 334")
+
+
+@pytest.mark.parametrize(
+    ("answers", "levels"),
+    [
+        ({"A>B", "B>A"}, 2),
+        ({"A>B"}, 2),
+        ({"A=B"}, 3),
+        ({"A>B", "A=B"}, 3),
+        ({"A>>B", "B>A"}, 5),
+        ({"A>>>B"}, 7),
+        ({"B>>>>A", "A>B"}, 9),
+    ],
+)
+def test_the_longest_arrow_says_how_many_levels_a_scale_has(answers: set[str], levels: int) -> None:
+    assert inferred_levels(answers) == levels
+
+
+def test_a_scale_with_an_even_number_of_levels_has_no_middle() -> None:
+    assert SCALES[4] == ("A>>B", "A>B", "B>A", "B>>A")
+    assert all(len(scale) == levels for levels, scale in SCALES.items())
