@@ -25,7 +25,6 @@ def qdot_command(
 ) -> None:
     """Scaling as below; parameters: slow_from, stop_at, leaving_factor, probe, speed_share."""
     slow_from, stop_at, leaving_factor = parameters[0], parameters[1], parameters[2]
-    stop_at = max(stop_at, slow_from * (1.0 + 1e-9))
     U, V, singular, gains = np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6)
     decompose(J, U, singular, V)
     # Compared in products: at a singularity the condition number is infinite.
@@ -78,6 +77,7 @@ METHOD = Method(
         Parameter("probe", 0.01, 1e-6, 0.1, "", "step along u_6 that tells its sign [m and rad, as a norm]"),
         Parameter("speed_share", 0.5, 0.01, 0.95, "", "the fastest joint's share of its speed limit"),
     ),
+    ascending=(("slow_from", "stop_at"),),
     properties=frozenset({Property.NEVER_REVERSES, Property.NEVER_AMPLIFIES, Property.WITHIN_SPEED_SHARE}),
     function=qdot_command,
 )

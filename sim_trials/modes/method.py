@@ -98,6 +98,8 @@ class Method:
         Paper and equation number.
     function : compiled function
         See the head of this module.
+    ascending : tuple of (str, str)
+        Pairs of parameters of which the first must be smaller than the second.
     """
 
     name: str
@@ -108,6 +110,7 @@ class Method:
     function: ModeFunction = field(repr=False, compare=False)
     properties: frozenset[Property] = frozenset()
     latex: str = ""
+    ascending: tuple[tuple[str, str], ...] = ()
 
     @property
     def parameter_names(self) -> tuple[str, ...]:

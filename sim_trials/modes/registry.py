@@ -90,7 +90,8 @@ def resolve(mode: Mode) -> ResolvedMode:
     Raises
     ------
     InputError
-        Unknown method or parameter, or a value outside its range; the line lists what is valid.
+        Unknown method or parameter, a value outside its range, or two values that contradict each other; the
+        line lists what is valid.
     """
     if mode.method not in METHODS:
         raise one_of(f"mode {mode.name}: method", mode.method, method_names())
@@ -108,4 +109,11 @@ def resolve(mode: Mode) -> ResolvedMode:
                 f" {parameter.low:g} and {parameter.high:g}{unit}"
             )
         values.append(value)
+    by_name = dict(zip(method.parameter_names, values, strict=True))
+    for smaller, larger in method.ascending:
+        if by_name[smaller] >= by_name[larger]:
+            raise InputError(
+                f"mode {mode.name}: {smaller} = {by_name[smaller]:g} must be smaller than"
+                f" {larger} = {by_name[larger]:g}"
+            )
     return ResolvedMode(mode.name, method, tuple(values))

@@ -4,6 +4,7 @@ import numpy as np
 
 from sim_trials.modes.method import Method, Parameter, Property, mode_function
 from sim_trials.modes.speed_limit import limit_speed
+from sim_trials.modes.transpose_step import transpose_step
 
 
 @mode_function
@@ -17,25 +18,8 @@ def qdot_command(
     memory: np.ndarray,
     qdot_out: np.ndarray,
 ) -> None:
-    """Eqs. (11) and (13); parameter: speed_share.
-
-    Where J' xdot is zero, the command is one that the arm cannot follow at all, and the quotient is 0 / 0.
-    """
-    square, moved_square = 0.0, 0.0
-    for j in range(6):
-        qdot_out[j] = 0.0
-        for i in range(6):
-            qdot_out[j] += J[i, j] * xdot[i]
-        square += qdot_out[j] * qdot_out[j]
-    for i in range(6):
-        moved = 0.0
-        for j in range(6):
-            moved += J[i, j] * qdot_out[j]
-        moved_square += moved * moved
-    # Far below the rounding of any real J' xdot, far above underflow.
-    alpha = square / moved_square if moved_square > 1e-200 else 0.0
-    for j in range(6):
-        qdot_out[j] *= alpha
+    """Eqs. (11) and (13); parameter: speed_share."""
+    transpose_step(J, xdot, qdot_out)
     limit_speed(qdot_out, parameters[0])
 
 

@@ -8,6 +8,7 @@ import itertools
 import numpy as np
 import pytest
 
+from data.errors import InputError
 from data.study import Mode
 from sim_trials.kinematics import JOINT_SPEED_LIMITS_RAD_S, handle_jacobian
 from sim_trials.modes.method import MEMORY_LENGTH, Property, ResolvedMode
@@ -22,7 +23,16 @@ def variants(method: str) -> list[ResolvedMode]:
     changes: list[dict[str, float]] = [{}]
     for parameter in METHODS[method].parameters:
         changes += [{parameter.name: parameter.low}, {parameter.name: parameter.high}]
-    return [resolve(Mode(name="X", method=method, parameters=change)) for change in changes]
+    return [
+        resolve(Mode(name="X", method=method, parameters=change))
+        for change in changes
+        if not contradicts(method, change)
+    ]
+
+
+def contradicts(method: str, change: dict[str, float]) -> bool:
+    values = {parameter.name: parameter.default for parameter in METHODS[method].parameters} | change
+    return any(values[smaller] >= values[larger] for smaller, larger in METHODS[method].ascending)
 
 
 def poses() -> list[np.ndarray]:
@@ -161,6 +171,15 @@ def test_what_is_missing_is_orthogonal_to_what_is_done(method: str) -> None:
             assert abs((command.xdot - done) @ done) <= 1e-9 * (command.xdot @ command.xdot)
             checked += bool(done.any())
     assert checked > 50
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.ascending])
+def test_contradictory_parameters_are_refused_with_both_values(method: str) -> None:
+    for smaller, larger in METHODS[method].ascending:
+        parameters = {parameter.name: parameter.default for parameter in METHODS[method].parameters}
+        parameters[smaller] = parameters[larger]
+        with pytest.raises(InputError, match=f"{smaller} = .* must be smaller than {larger} = "):
+            resolve(Mode(name="X", method=method, parameters=parameters))
 
 
 @pytest.mark.parametrize("claim", Property)

@@ -9,6 +9,7 @@ from data.study import Mode
 from sim_trials.kinematics import JOINT_SPEED_LIMITS_RAD_S, handle_jacobian
 from sim_trials.modes.method import MEMORY_LENGTH
 from sim_trials.modes.registry import METHODS, resolve
+from sim_trials.modes.singular_slope import singular_slope
 from sim_trials.singular_value import smallest_singular_value
 
 START = np.array([3.4504, -1.4226, 1.7185, -0.2959, 1.8796, 0.0])
@@ -105,7 +106,73 @@ def joint_limit_damping(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.nd
     return np.linalg.solve(J.T @ J + D @ D, J.T @ xdot)
 
 
+def damped(J: np.ndarray, xdot: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    return J.T @ np.linalg.solve(J @ J.T + damping, xdot)
+
+
+def smallest(J: np.ndarray) -> float:
+    return float(np.linalg.svd(J, compute_uv=False)[-1])
+
+
+def chiaverini_dls(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    squared = 0.2**2 * max(0.0, 1 - (smallest(J) / 0.25) ** 2)
+    return damped(J, xdot, squared * np.eye(6))
+
+
+def numerical_filtering(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    lost = np.linalg.svd(J)[0][:, -1]
+    squared = 0.2**2 * max(0.0, 1 - (smallest(J) / 0.25) ** 2)
+    return damped(J, xdot, 0.02**2 * np.eye(6) + squared * np.outer(lost, lost))
+
+
+def manipulability_dls(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    squared = 0.2**2 * max(0.0, 1 - abs(np.linalg.det(J)) / 0.15) ** 2
+    return damped(J, xdot, squared * np.eye(6))
+
+
+def dls_then_transpose(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    if smallest(J) < 0.05:
+        return transpose(q, J, xdot)
+    damping = 0.2 * max(0.0, 1 - smallest(J) / 0.25) ** 2
+    return limited(damped(J, xdot, damping**2 * np.eye(6)))
+
+
+def jparse(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    """By its matrices: safety Jacobian, projection, scaled singular directions."""
+    U, sigma, Vt = np.linalg.svd(J)
+    is_singular = sigma <= 0.1 * sigma[0]
+    safety = U @ np.diag(np.where(is_singular, 0.1 * sigma[0], sigma)) @ Vt
+    kept = U[:, ~is_singular] @ U[:, ~is_singular].T
+    lost = U[:, is_singular] @ np.diag(sigma[is_singular] / (0.1 * sigma[0])) @ U[:, is_singular].T
+    return limited(np.linalg.inv(safety) @ (kept + lost) @ xdot)
+
+
+def singularity_barrier(q: np.ndarray, J: np.ndarray, xdot: np.ndarray) -> np.ndarray:
+    """The quadratic programme by its conditions of optimality, the slope of sigma by finite differences."""
+    slope, step = np.empty(6), 1e-6
+    for i in range(6):
+        sigmas = []
+        for way in (step, -step):
+            moved, J_moved = q.copy(), np.empty((6, 6))
+            moved[i] += way
+            handle_jacobian(moved, J_moved)
+            sigmas.append(smallest(J_moved))
+        slope[i] = (sigmas[0] - sigmas[1]) / (2 * step)
+    H, c = J.T @ J + 0.01**2 * np.eye(6), J.T @ xdot
+    qdot = np.linalg.solve(H, c)
+    least = min(0.0, -5.0 * (smallest(J) - 0.03))
+    if slope @ qdot < least:
+        bordered = np.block([[H, -slope[:, None]], [slope[None, :], np.zeros((1, 1))]])
+        qdot = np.linalg.solve(bordered, np.append(c, least))[:6]
+    return limited(qdot)
+
+
 EQUATIONS: tuple[Equation, ...] = (
+    chiaverini_dls,
+    numerical_filtering,
+    manipulability_dls,
+    dls_then_transpose,
+    jparse,
     pseudo_inverse,
     transpose,
     constant_dls,
@@ -123,6 +190,37 @@ def test_method_is_its_equation(equation: Equation) -> None:
         np.testing.assert_allclose(
             answer(equation.__name__, q, xdot), equation(q, J, xdot), rtol=1e-7, atol=1e-10
         )
+
+
+def test_the_barrier_is_its_quadratic_programme_and_binds_in_many_poses() -> None:
+    bound = 0
+    for q, J, xdot in samples(200, elbow=(0.02, 0.8)):
+        expected = singularity_barrier(q, J, xdot)
+        np.testing.assert_allclose(answer("singularity_barrier", q, xdot), expected, rtol=1e-5, atol=1e-8)
+        bound += not np.allclose(expected, limited(np.linalg.solve(J.T @ J + 1e-4 * np.eye(6), J.T @ xdot)))
+    assert 30 < bound < 170
+
+
+def test_the_slope_of_sigma_is_that_of_finite_differences() -> None:
+    for q, J, _ in samples(100, elbow=(0.02, 1.7)):
+        U, _, Vt = np.linalg.svd(J)
+        slope = np.empty(6)
+        singular_slope(J, U[:, 5].copy(), Vt[5].copy(), slope)
+        for i in range(6):
+            sigmas = []
+            for way in (1e-5, -1e-5):
+                moved, J_moved = q.copy(), np.empty((6, 6))
+                moved[i] += way
+                handle_jacobian(moved, J_moved)
+                sigmas.append(np.linalg.svd(J_moved, compute_uv=False)[-1])
+            assert slope[i] == pytest.approx((sigmas[0] - sigmas[1]) / 2e-5, rel=1e-5, abs=1e-8)
+
+
+def test_jparse_scales_commands_along_the_lost_direction_down_to_nothing() -> None:
+    for q, J, _ in samples(20, elbow=(0.001, 0.05)):
+        U, sigma, _ = np.linalg.svd(J)
+        done = J @ answer("jparse", q, 0.01 * U[:, 5].copy())
+        assert U[:, 5] @ done == pytest.approx(0.01 * (sigma[5] / (0.1 * sigma[0])) ** 2, rel=1e-6)
 
 
 @pytest.mark.parametrize("sigma", [0.0, 0.3, 0.9])
