@@ -1,27 +1,22 @@
 """How often the robot got stuck under each mode, per comparison and per minute."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
-from scipy.special import betaincinv, betaln, gammaincinv, gammaln
+from scipy.special import betaincinv
 
+from analysis.event_rate import exposures, rate_of_comparisons, rate_over_people
 from analysis.results import HDI_PROBABILITY, Quantity
+from analysis.tabulated import Tabulated
 from data.responses import StuckTable
-
-_RATES = (np.arange(600) + 0.5) / 600
-_CORRELATIONS = (np.arange(60) + 0.5) / 60
-_MEAN_PER_MINUTE = 1.0
-"""Mean of the Exponential prior on stuck comparisons a minute [1/min]. Untuned: with more, no task is
-left."""
 
 
 @dataclass(frozen=True)
 class StuckRate:
-    """Stuck events of one mode.
+    """Stuck events of one mode: of these people and comparisons, and of people in general.
 
     Attributes
     ----------
@@ -29,34 +24,39 @@ class StuckRate:
         Comparisons that contain the mode.
     stuck : int
         Those of them in which the robot got stuck at least once under this mode.
+    participants, participants_stuck : int
+        Those who had such comparisons, and those of them with whom the robot got stuck; 0 if participants
+        are not known.
     rate_mean, rate_hdi_low, rate_hdi_high : float
-        Share of comparisons: Beta(1, 1) prior, 94 % HDI; comparisons taken as independent.
-    between : Quantity
-        Share over a population of participants: each has an own rate, Beta with mean ``m`` and intraclass
-        correlation ``r``, both uniform on 0..1; this is the posterior of ``m``.
+        Share of comparisons: Beta(1, 1) prior, 94 % HDI. Comparisons are taken as independent, so it speaks
+        of these people and comparisons.
     exposure_min : float
-        Time under the mode [min].
-    per_minute_mean, per_minute_hdi_low, per_minute_hdi_high : float
-        Comparisons stuck per minute of exposure [1/min], flat prior; nan without exposure. Minutes are taken
-        as independent.
+        Known time under the mode [min].
+    per_minute : Quantity or None
+        Rate of getting stuck [1/min] if all people have the same one, `event_rate.rate_of_comparisons`: it
+        speaks of these people and comparisons. None without exposure.
+    between : Quantity or None
+        Share of a new person's comparisons of the usual length (the median of this mode's), from
+        `event_rate.rate_over_people`: it speaks of people in general. None if participants are not known.
     per_minute_between : Quantity or None
-        The same over a population of participants: each has an own rate, Gamma with mean ``m`` and squared
-        coefficient of variation ``r / (1 - r)``, events are Poisson; m ~ Exponential with a mean of 1 a
-        minute (untuned), r uniform on 0..1. None without exposure.
+        Rate of the median person [1/min], from the same posterior. None without exposure, too.
+    share_of_people : Tabulated or None
+        The distribution that ``between`` sums up.
     """
 
     mode: str
     comparisons: int
     stuck: int
+    participants: int
+    participants_stuck: int
     rate_mean: float
     rate_hdi_low: float
     rate_hdi_high: float
-    between: Quantity
-    exposure_min: float
-    per_minute_mean: float
-    per_minute_hdi_low: float
-    per_minute_hdi_high: float
+    exposure_min: float = 0.0
+    per_minute: Quantity | None = None
+    between: Quantity | None = None
     per_minute_between: Quantity | None = None
+    share_of_people: Tabulated | None = field(default=None, repr=False, compare=False)
 
 
 def stuck_rates(table: StuckTable, modes: tuple[str, ...] | None = None) -> tuple[StuckRate, ...]:
@@ -67,27 +67,54 @@ def stuck_rates(table: StuckTable, modes: tuple[str, ...] | None = None) -> tupl
     )
 
 
+def share_of_comparisons(stuck: int, comparisons: int) -> Quantity:
+    """Posterior of the share of comparisons that get stuck, comparisons independent: Beta(1, 1) prior."""
+    a, b = 1.0 + stuck, 1.0 + comparisons - stuck
+    low, high = _shortest(lambda p: betaincinv(a, b, p), falls=stuck == 0, rises=stuck == comparisons)
+    sd = np.sqrt(a * b / (a + b + 1)) / (a + b)
+    return Quantity("stuck_share", a / (a + b), float(sd), low, high)
+
+
 def _rate(mode: str, rows: pd.DataFrame) -> StuckRate:
     n, k = len(rows), int(rows["stuck"].sum())
-    a, b = 1.0 + k, 1.0 + n - k
-    low, high = _shortest(lambda p: betaincinv(a, b, p), falls=k == 0, rises=k == n)
-    minutes = float(rows["exposure_s"].sum()) / 60.0
-    per_minute = (np.nan, np.nan, np.nan)
-    if minutes > 0:
-        ends = _shortest(lambda p: gammaincinv(a, p) / minutes, falls=k == 0, rises=False)
-        per_minute = (a / minutes, *ends)
+    share = share_of_comparisons(k, n)
+    by_person = rows.groupby("participant")["stuck"].any()
+    are_known = n > 0 and "" not in by_person.index
+    people, people_stuck = (len(by_person), int(by_person.sum())) if are_known else (0, 0)
+    seconds = rows["exposure_s"].to_numpy(np.float64)
+    minutes = float(seconds[seconds > 0].sum()) / 60.0
+    per_minute = between = per_minute_between = of_people = None
+    if n:
+        data, usual = exposures(
+            rows["participant"].to_numpy(object), rows["stuck"].to_numpy(bool), seconds / 60.0
+        )
+        if minutes:
+            per_minute = _summary(f"stuck_per_minute_{mode}", rate_of_comparisons(data).rate())
+        if are_known:
+            posterior = rate_over_people(data)
+            of_people = posterior.share(usual)
+            between = _summary(f"stuck_rate_{mode}", of_people)
+            if minutes:
+                per_minute_between = _summary(f"stuck_per_minute_{mode}", posterior.rate())
     return StuckRate(
-        mode,
-        n,
-        k,
-        a / (a + b),
-        low,
-        high,
-        _between_participants(mode, rows),
-        minutes,
-        *per_minute,
-        _between_per_minute(mode, rows) if minutes > 0 else None,
+        mode=mode,
+        comparisons=n,
+        stuck=k,
+        participants=people,
+        participants_stuck=people_stuck,
+        rate_mean=share.mean,
+        rate_hdi_low=share.hdi_low,
+        rate_hdi_high=share.hdi_high,
+        exposure_min=minutes,
+        per_minute=per_minute,
+        between=between,
+        per_minute_between=per_minute_between,
+        share_of_people=of_people,
     )
+
+
+def _summary(name: str, of: Tabulated) -> Quantity:
+    return Quantity(name, of.mean, of.sd, *of.hdi())
 
 
 def _shortest(quantile: Callable[[float], float], *, falls: bool, rises: bool) -> tuple[float, float]:
@@ -103,58 +130,3 @@ def _shortest(quantile: Callable[[float], float], *, falls: bool, rises: bool) -
         options={"xatol": 1e-10},
     )
     return float(quantile(best.x)), float(quantile(best.x + HDI_PROBABILITY))
-
-
-def _between_participants(mode: str, rows: pd.DataFrame) -> Quantity:
-    """Posterior of the mean rate over participants, by summation over a grid of mean and correlation.
-
-    A Beta with mean m and intraclass correlation r has a + b = 1/r - 1.
-    """
-    by_person = rows.groupby("participant")["stuck"].agg(["sum", "count"]).to_numpy(dtype=np.int64)
-    kinds, people = np.unique(by_person, axis=0, return_counts=True)
-    total = (1.0 / _CORRELATIONS - 1.0)[None, :]
-    a, b = _RATES[:, None] * total, (1.0 - _RATES[:, None]) * total
-    log_p = np.zeros_like(a)
-    for (k, n), alike in zip(kinds, people, strict=True):
-        log_p += alike * (betaln(a + k, b + n - k) - betaln(a, b))
-    weight = np.exp(log_p - log_p.max()).sum(axis=1)
-    weight /= weight.sum()
-    mean = float(weight @ _RATES)
-    low, high = _grid_hdi(weight, 1.0)
-    return Quantity(f"stuck_rate_{mode}", mean, float(np.sqrt(weight @ (_RATES - mean) ** 2)), low, high)
-
-
-def _between_per_minute(mode: str, rows: pd.DataFrame) -> Quantity:
-    """Posterior of the mean rate a minute over participants, by summation over a grid of mean and spread.
-
-    A person's events are then negative binomial: a Gamma with mean m and squared coefficient of variation c
-    has shape 1/c and rate 1/(c m).
-    """
-    by_person = rows.groupby("participant").agg(k=("stuck", "sum"), s=("exposure_s", "sum"))
-    events, minutes = by_person["k"].to_numpy(float), by_person["s"].to_numpy(float) / 60.0
-    # Up to where no posterior of so few events in so much time reaches.
-    most = min(12.0 * _MEAN_PER_MINUTE, 15.0 * (events.sum() + 1.0) / minutes.sum())
-    m = (_RATES * most)[:, None]
-    c = (_CORRELATIONS / (1.0 - _CORRELATIONS))[None, :]
-    log_p = -m / _MEAN_PER_MINUTE + np.zeros_like(c)
-    for k, t in zip(events, minutes, strict=True):
-        log_p = (
-            log_p + gammaln(k + 1 / c) - gammaln(1 / c) + k * np.log(c) - (k + 1 / c) * np.log1p(c * m * t)
-        )
-        if k:
-            log_p = log_p + k * np.log(m * t)
-    weight = np.exp(log_p - log_p.max()).sum(axis=1)
-    weight /= weight.sum()
-    rates = _RATES * most
-    mean = float(weight @ rates)
-    low, high = _grid_hdi(weight, most)
-    return Quantity(f"stuck_per_minute_{mode}", mean, float(np.sqrt(weight @ (rates - mean) ** 2)), low, high)
-
-
-def _grid_hdi(weight: NDArray[np.float64], most: float) -> tuple[float, float]:
-    """The shortest interval on the grid of rates from 0 to ``most`` with 94 % of the weight."""
-    edges = np.linspace(0.0, most, len(weight) + 1)
-    mass = np.concatenate([[0.0], np.cumsum(weight)])
-    ends = np.interp(mass + HDI_PROBABILITY, mass, edges, right=np.nan)
-    first = int(np.nanargmin(ends - edges))
-    return float(edges[first]), float(ends[first])

@@ -83,7 +83,8 @@ class StuckTable:
     ----------
     rows : DataFrame
         One row per comparison and mode in it: ``participant``, ``comparison``, ``mode`` (str),
-        ``stuck`` (bool: at least once under that mode) and ``exposure_s`` (float).
+        ``stuck`` (bool: at least once under that mode) and ``exposure_s`` (float; NaN or 0 if unknown).
+        ``participant`` is "" if nobody knows who it was.
     """
 
     rows: pd.DataFrame

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isnan
 from typing import TYPE_CHECKING
 
 from analysis.figures.labels import distinct, fitted, one_line, width_px
@@ -21,6 +20,7 @@ from analysis.figures.style import (
     place_axes,
     write_text,
 )
+from analysis.results import Quantity
 from analysis.stuck import StuckRate
 
 if TYPE_CHECKING:
@@ -38,26 +38,17 @@ class _Row:
     mean: float
     low: float
     high: float
-    over_people: tuple[float, float, float]
+    over_people: tuple[float, float, float] | None
 
 
 def draw_stuck(rates: Sequence[StuckRate], tag: str = "") -> Drawing:
-    """Rates with intervals, one row a mode, and the counts behind them; below each the rate over people."""
+    """Rates with intervals, one row a mode, and the counts; below each the rate in people in general."""
     with house_style():
-        shares = [
-            _Row(r.rate_mean, r.rate_hdi_low, r.rate_hdi_high, (b.mean, b.hdi_low, b.hdi_high))
-            for r in rates
-            for b in (r.between,)
-        ]
+        shares = [_Row(r.rate_mean, r.rate_hdi_low, r.rate_hdi_high, _numbers(r.between)) for r in rates]
         minutes = [
-            _Row(
-                r.per_minute_mean,
-                r.per_minute_hdi_low,
-                r.per_minute_hdi_high,
-                (b.mean, b.hdi_low, b.hdi_high),
-            )
+            _Row(own.mean, own.hdi_low, own.hdi_high, _numbers(r.per_minute_between))
             for r in rates
-            if (b := r.per_minute_between) is not None and not isnan(r.per_minute_mean)
+            if (own := r.per_minute) is not None
         ]
         panels = [("Share of comparisons", shares, True)]
         if len(minutes) == len(rates):
@@ -80,14 +71,14 @@ def draw_stuck(rates: Sequence[StuckRate], tag: str = "") -> Drawing:
             y = _TOP_PX - 8 + pitch * (row + 0.5) + 3
             write_text(figure, left - 12, y, fitted(name, left - 12), ha="right", color=INK)
             write_text(figure, WIDTH_PX, y, f"{rate.stuck:,} / {rate.comparisons:,}", ha="right", color=INK_2)
-        _write_key(figure, left, _TOP_PX + height + 38)
+        _write_key(figure, left, _TOP_PX + height + 38, any(row.over_people for row in shares))
         said = "; ".join(f"{one_line(r.mode)} {r.stuck} of {r.comparisons}" for r in rates)
         return finish(figure, "stuck", f"Comparisons with the robot stuck: {said}.", tag)
 
 
 def _scale(axes: "Axes", rows: Sequence[_Row], is_share: bool) -> None:
     """A scale from 0 to above the highest interval, in about five steps."""
-    highest = max(max(row.high, row.over_people[2]) for row in rows)
+    highest = max(max(row.high, row.over_people[2] if row.over_people else 0.0) for row in rows)
     step = next((s for s in _STEPS if highest / s <= 5.0), _STEPS[-1])
     limit = step * (int(highest / step) + 1)
     if is_share:
@@ -101,16 +92,22 @@ def _scale(axes: "Axes", rows: Sequence[_Row], is_share: bool) -> None:
 
 
 def _draw_row(axes: "Axes", row: int, rate: _Row, modes: int) -> None:
-    mean, low, high = rate.over_people
     axes.hlines(row + 0.4, rate.low, rate.high, color=DATA, linewidth=1.15)
-    axes.hlines(row + 0.74, low, high, color=DATA_2, linewidth=1.15)
-    axes.vlines(mean, row + 0.63, row + 0.85, color=DATA_2, linewidth=2.0)
+    if rate.over_people is not None:
+        mean, low, high = rate.over_people
+        axes.hlines(row + 0.74, low, high, color=DATA_2, linewidth=1.15)
+        axes.vlines(mean, row + 0.63, row + 0.85, color=DATA_2, linewidth=2.0)
     draw_point(axes, rate.mean, row + 0.4, row, modes > 8)
 
 
-def _write_key(figure: "Figure", left: float, base: float) -> None:
+def _numbers(q: Quantity | None) -> tuple[float, float, float] | None:
+    return None if q is None else (q.mean, q.hdi_low, q.hdi_high)
+
+
+def _write_key(figure: "Figure", left: float, base: float, over_people: bool) -> None:
     x = left
-    for colour, text in ((DATA, "comparisons independent"), (DATA_2, "over people")):
+    marks = [(DATA, "these people and comparisons")]
+    for colour, text in [*marks, *([(DATA_2, "people in general")] if over_people else [])]:
         mark = place_axes(figure, x, base - 8, 24, 8)
         mark.set_xlim(0, 1)
         mark.set_ylim(0, 1)

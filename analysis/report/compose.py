@@ -27,7 +27,7 @@ from analysis.report.predictions import predictive_section
 from analysis.report.quality import checks_section, delay_section, exclusion_section
 from analysis.report.references import cited
 from analysis.report.refitted import metric_sections, people_sections, refit_sections
-from analysis.report.stuck import contrasts_section, stuck_section
+from analysis.report.stuck import contrasts_section, likely_difference, stuck_section
 from analysis.report.summary import known_comparisons
 from analysis.results import Fit
 from analysis.stuck import StuckRate
@@ -109,7 +109,9 @@ def compose(
         title=_title(table, study),
         subtitle=_subtitle(table, fit, study),
         tag=tag,
-        lead=lead(found, rates, tag, [short or name for name, short in silent]),
+        lead=lead(
+            found, rates, tag, [short or name for name, short in silent], likely_difference(contrasts, rates)
+        ),
         worth=worth.sections[0],
         findings=found,
         unranked=tuple(q for q in fit.questions if not q.ranked),

@@ -94,7 +94,11 @@ def _finding(question: QuestionFit, label: str) -> Finding:
 
 
 def lead(
-    found: Sequence[Finding], stuck: Sequence[StuckRate], tag: str, unanswered: Sequence[str] = ()
+    found: Sequence[Finding],
+    stuck: Sequence[StuckRate],
+    tag: str,
+    unanswered: Sequence[str] = (),
+    stuck_difference: str | None = None,
 ) -> tuple[Phrase, ...]:
     """The first paragraph of the report, careful and plain.
 
@@ -104,6 +108,9 @@ def lead(
         ``simulated data``, ``partly simulated data`` or nothing.
     unanswered : sequence of str
         Questions of the study that nobody answered.
+    stuck_difference : str or None
+        The surest difference of two stuck rates in people in general; empty if none is likely, None if rates
+        were not compared.
     """
     likely = [f for f in found if f.reading == "likely"]
     still_open = [f for f in found if f.reading == "open"]
@@ -128,7 +135,7 @@ def lead(
         names = listed([f"“{isolated(name)}”" for name in unanswered])
         phrases.append(Phrase(f"Nobody answered {names}. "))
     if stuck:
-        phrases.append(Phrase(_stuck_sentence(stuck)))
+        phrases.append(Phrase(_stuck_sentence(stuck, stuck_difference, tag)))
     return tuple(phrases)
 
 
@@ -252,18 +259,31 @@ def _more_modes(n: int) -> str:
     return "1 more mode" if n == 1 else f"{n} more modes"
 
 
-def _stuck_sentence(stuck: Sequence[StuckRate]) -> str:
+def _stuck_sentence(stuck: Sequence[StuckRate], difference: str | None, tag: str) -> str:
+    """Counts of these people's comparisons, then what is likely of people in general."""
     some = sorted((r for r in stuck if r.stuck), key=lambda r: -r.stuck / r.comparisons)
     none = [r for r in stuck if not r.stuck]
     if not some:
         least, most = (f(r.comparisons for r in stuck) for f in (min, max))
         shown = f"{most:,}" if least == most else f"{least:,} to {most:,}"
         return f"The robot never got stuck, in {shown} comparisons with each mode."
-    said = [f"in {r.stuck} of {r.comparisons} with {isolated(r.mode)}" for r in some[:_MOST_STUCK_NAMED]]
-    said[0] = said[0].replace(" with ", " comparisons with ", 1)
+    named = some[:_MOST_STUCK_NAMED]
+    parts = [f"in {r.stuck} of {r.comparisons} with {isolated(r.mode)}{_people_stuck(r)}" for r in named]
+    parts[0] = parts[0].replace(" with ", " comparisons with ", 1)
     if len(some) > _MOST_STUCK_NAMED:
-        said.append(f"at no higher rate with {_more_modes(len(some) - _MOST_STUCK_NAMED)}")
+        parts.append(f"at no higher rate with {_more_modes(len(some) - _MOST_STUCK_NAMED)}")
     if none:
         names = [isolated(r.mode) for r in none]
-        said.append(f"in none with {listed(names) if len(names) <= _MOST_NAMED else f'{len(names)} modes'}")
-    return f"The robot got stuck {listed(said)}."
+        parts.append(f"in none with {listed(names) if len(names) <= _MOST_NAMED else f'{len(names)} modes'}")
+    counts = f"The robot got stuck {listed(parts)}."
+    if difference is None:
+        return counts
+    general = difference or "no difference between two modes' rates is likely"
+    simulated = "simulated " if tag and not tag.startswith("partly") else ""
+    return f"{counts} That is of these comparisons; in {simulated}people in general {general}."
+
+
+def _people_stuck(rate: StuckRate) -> str:
+    if not rate.participants:
+        return ""
+    return f" ({rate.participants_stuck} of {rate.participants} people)"

@@ -9,6 +9,7 @@ from markupsafe import Markup
 from analysis.closer_look import CloserLook
 from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, shown_ess, shown_rhat
 from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
+from analysis.event_rate import LOG_RATE_SD, MEDIAN_RATE, SPREAD_SCALE, UNKNOWN_MIN
 from analysis.figures.labels import LIKELY
 from analysis.fit import LONGER
 from analysis.persons import POINTS
@@ -302,25 +303,49 @@ def _closer(look: CloserLook | None) -> str:
 def _stuck(rates: Sequence[StuckRate]) -> str:
     if not rates:
         return ""
-    per_minute = any(rate.per_minute_between is not None for rate in rates)
-    said = [
-        "Stuck rates are shares of a mode's comparisons, with a uniform prior and comparisons independent; "
-        "over people, each participant has a rate of their own, Beta distributed, with uniform priors on its "
-        "mean and on the intraclass correlation."
+    minutes = [rate.per_minute is not None for rate in rates]
+    over_people = any(rate.between is not None for rate in rates)
+    sentences = [
+        "The share of a mode's comparisons in which the robot got stuck has a uniform prior, with "
+        "comparisons independent: it speaks of these people and comparisons."
     ]
-    if per_minute:
-        said.append(
-            "Per minute of exposure, the first has Poisson counts and a flat prior on the rate; over people, "
-            "rates are Gamma distributed, with an Exponential prior of mean 1 a minute on their mean, and r "
-            "uniform where r / (1 − r) is their squared coefficient of variation."
+    if over_people or any(minutes):
+        sentences.append(
+            "In a comparison with t minutes under a mode the robot gets stuck at least once with probability "
+            f"1 − exp(−rate · t). The logarithm of the rate has a normal prior around log {MEDIAN_RATE:g} a "
+            f"minute with standard deviation {LOG_RATE_SD:g}."
+        )
+    if over_people:
+        sentences.append(
+            "For people in general, each participant has a rate of their own, log-normal around the median "
+            "person's, and the standard deviation of its logarithm has a half-normal prior of scale "
+            f"{SPREAD_SCALE:g}; reported are the median person's rate and the mean share of a new person's "
+            "comparisons, each as long as the mode's median comparison. For these people and comparisons, "
+            "all rates per minute are the same."
+        )
+        if not all(minutes):
+            sentences.append(
+                "A comparison of unknown length counts as the median of the known ones, or as "
+                f"{UNKNOWN_MIN:g} minutes."
+            )
+    if over_people or any(minutes):
+        sentences.append(
+            "These posteriors are sums over grids (Trefethen & Weideman 2014), and highest-density intervals "
+            "are the shortest on the scale that is printed."
         )
     if len(rates) > 1 and any(rate.stuck for rate in rates):
-        said.append(
-            "Two rates are compared by their posteriors, comparisons independent, and beside it by two-sided "
+        sentences.append(
+            "Two modes are compared, for these people and comparisons, by their posteriors and by two-sided "
             "exact tests: Fisher's (Fisher 1935), and one conditional on how often each participant got "
-            "stuck (Mehta et al. 1985), neither corrected for several pairs."
+            "stuck (Mehta et al. 1985)."
         )
-    return " ".join(said)
+        if over_people:
+            sentences.append(
+                "For people in general they are compared by the posteriors over people, the modes modelled "
+                "apart, and by the two-sided exact test that exchanges the modes within people (Basu 1980)."
+            )
+        sentences.append("Nothing is corrected for several pairs.")
+    return " ".join(sentences)
 
 
 def _refits(refitted: Refits | None) -> str:

@@ -41,6 +41,12 @@ SOURCES = (
         "Agresti, A. (1992). Analysis of ordinal paired comparison data. Applied Statistics 41(2), 287–297.",
     ),
     Reference(
+        "Basu",
+        1980,
+        "Basu, D. (1980). Randomization analysis of experimental data: the Fisher randomization test. "
+        "Journal of the American Statistical Association 75(371), 575–582.",
+    ),
+    Reference(
         "Bayarri & Castellanos",
         2007,
         "Bayarri, M. J. and Castellanos, M. E. (2007). Bayesian checking of the second levels of "
@@ -128,6 +134,12 @@ SOURCES = (
     ),
     Reference(
         "Rubin", 1981, "Rubin, D. B. (1981). The Bayesian bootstrap. The Annals of Statistics 9(1), 130–134."
+    ),
+    Reference(
+        "Trefethen & Weideman",
+        2014,
+        "Trefethen, L. N. and Weideman, J. A. C. (2014). The exponentially convergent trapezoidal rule. SIAM "
+        "Review 56(3), 385–458.",
     ),
     Reference(
         "Vehtari et al.",

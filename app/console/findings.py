@@ -5,9 +5,15 @@ from dataclasses import dataclass
 
 from analysis.counts import count_responses
 from analysis.quick import quick_ranking
-from analysis.stuck import stuck_rates
+from analysis.stuck import share_of_comparisons
 from data.errors import ElbowroomError
 from data.responses import ResponseTable, StuckTable
+
+ONLY_THESE = (
+    "Comparisons count as independent, so it speaks of these people and comparisons. The report also has the "
+    "rate in people in general."
+)
+"""Stands below stuck rates."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +41,10 @@ class QuestionAtAGlance:
 
 @dataclass(frozen=True)
 class StuckAtAGlance:
-    """In how many of its comparisons a mode had the robot stuck; rate with its 94 % interval."""
+    """In how many of its comparisons a mode had the robot stuck; rate with its 94 % interval.
+
+    Comparisons count as independent, so the interval speaks of these people and comparisons.
+    """
 
     label: str
     stuck: int
@@ -67,18 +76,14 @@ def ranking_at_a_glance(table: ResponseTable, labels: Mapping[str, str]) -> tupl
 
 
 def stuck_at_a_glance(table: StuckTable, labels: Mapping[str, str]) -> tuple[StuckAtAGlance, ...]:
-    """Each mode's rate of comparisons in which it had the robot stuck."""
-    return tuple(
-        StuckAtAGlance(
-            labels[rate.mode],
-            rate.stuck,
-            rate.comparisons,
-            rate.rate_mean,
-            rate.rate_hdi_low,
-            rate.rate_hdi_high,
-        )
-        for rate in stuck_rates(table, tuple(labels))
-    )
+    """Each mode's rate of comparisons in which it had the robot stuck, comparisons independent."""
+    glances = []
+    for mode, label in labels.items():
+        is_stuck = table.rows.loc[table.rows["mode"] == mode, "stuck"]
+        stuck, comparisons = int(is_stuck.sum()), len(is_stuck)
+        share = share_of_comparisons(stuck, comparisons)
+        glances.append(StuckAtAGlance(label, stuck, comparisons, share.mean, share.hdi_low, share.hdi_high))
+    return tuple(glances)
 
 
 def _relabelled(reason: str, labels: Mapping[str, str]) -> str:

@@ -4,6 +4,7 @@ import streamlit as st
 
 from app.console.charts import stuck_chart, worth_chart
 from app.console.evidence import Evidence, evidence, includes_simulated, simulated_switch
+from app.console.findings import ONLY_THESE
 from app.console.labels import shown_labels
 from app.console.people import Seat, seats
 from app.console.quality import quality
@@ -90,7 +91,10 @@ def _stuck(found: Evidence) -> None:
         st.caption("No trials are stored yet.")
         return
     st.altair_chart(stuck_chart(found.stuck), width="stretch")
-    st.caption("Share of comparisons with the mode in which the robot got stuck under it, 94 % interval.")
+    st.caption(
+        "Share of comparisons with the mode in which the robot got stuck under it, 94 % interval. "
+        + ONLY_THESE
+    )
 
 
 def _sessions(desk: Desk, seated: tuple[Seat, ...]) -> None:

@@ -4,6 +4,7 @@ import streamlit as st
 
 from app.console.charts import percent, worth_chart
 from app.console.evidence import evidence, simulated_switch
+from app.console.findings import ONLY_THESE
 from app.console.fit_card import fit_card
 from app.console.style import card, heading, headline, table
 from app.server.desk import Desk
@@ -58,3 +59,4 @@ def show(desk: Desk) -> None:
                 ],
                 numbers=(1, 2, 3, 4),
             )
+            st.caption(ONLY_THESE)

@@ -133,7 +133,8 @@ class StoredEvidence(StoredLinks):
         """Which comparisons had the robot stuck under which mode; None if no trials are known.
 
         A comparison counts once any trial of it is known, under both its modes; attention checks
-        are left out. The exposure is NaN where a trial of unknown duration was imported.
+        are left out. The exposure is NaN where a trial of unknown duration was imported. The participant
+        is "" where answers were imported without one.
         """
         sources = self.sources(study, include_simulated)
         query = (
@@ -149,6 +150,7 @@ class StoredEvidence(StoredLinks):
                 .exists()
                 .label("event"),
                 trials.c.duration_s,
+                participants.c.pooled,
             )
             .join_from(trials, comparisons)
             .join(participants)
@@ -169,7 +171,7 @@ class StoredEvidence(StoredLinks):
             for mode in (trial["mode_a"], trial["mode_b"]):
                 key = (trial["comparison"], mode)
                 row = {
-                    "participant": trial["participant"],
+                    "participant": "" if trial["pooled"] else trial["participant"],
                     "comparison": key[0],
                     "mode": mode,
                     "stuck": False,

@@ -1,12 +1,14 @@
 """Stuck rates against exact distributions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
-from scipy.stats import beta, gamma
+from scipy.stats import beta
 
+from analysis.results import Quantity
 from analysis.stuck import stuck_rates
-from analysis.stuck_contrasts import exact_p, stuck_contrasts
 from data.responses import StuckTable
 
 
@@ -27,6 +29,10 @@ ELEVEN = [(2, 4), (1, 4), (2, 4), (1, 4), (2, 4), (1, 4), (2, 4)]
 NONE = [(0, 4)] * 7
 
 
+def printed(rate: Quantity) -> tuple[float, float, float]:
+    return rate.mean, rate.hdi_low, rate.hdi_high
+
+
 def test_eleven_of_twenty_eight_has_the_known_interval():
     rates = stuck_rates(events({"M1": ELEVEN, "M2": NONE}))
     assert [(r.mode, r.comparisons, r.stuck) for r in rates] == [("M1", 28, 11), ("M2", 28, 0)]
@@ -44,56 +50,61 @@ def test_intervals_hold_94_percent_and_no_shorter_one_does(stuck):
     assert posterior.cdf(high) - posterior.cdf(low) == pytest.approx(0.94, abs=1e-8)
     starts = np.linspace(0, 0.06, 601)
     assert high - low <= (posterior.ppf(starts + 0.94) - posterior.ppf(starts)).min() + 1e-6
-    per_minute = gamma(1 + stuck, scale=1 / 28)
-    held = per_minute.cdf(rate.per_minute_hdi_high) - per_minute.cdf(rate.per_minute_hdi_low)
-    assert held == pytest.approx(0.94, abs=1e-8)
-    assert rate.per_minute_mean == pytest.approx(per_minute.mean())
 
 
-def test_people_who_differ_widen_the_rate_of_the_population():
-    alike = stuck_rates(events({"M1": [(2, 4)] * 8}))[0].between
-    apart = stuck_rates(events({"M1": [(4, 4), (0, 4)] * 4}))[0].between
-    assert apart.sd > 1.3 * alike.sd
-    assert alike.mean == pytest.approx(0.5, abs=1e-6)
-    assert apart.mean == pytest.approx(0.5, abs=1e-6)
+def test_events_over_people_and_per_minute_come_from_one_posterior():
+    rate, none = stuck_rates(events({"M1": ELEVEN, "M2": NONE}, exposure_s=60 * 53 / 28))
+    assert (rate.participants, rate.participants_stuck) == (7, 7)
+    assert (none.participants, none.participants_stuck) == (7, 0)
+    assert rate.exposure_min == pytest.approx(53.0)
+    assert printed(rate.between) == pytest.approx((0.3855, 0.2094, 0.5654), abs=3e-4)
+    assert printed(rate.per_minute_between) == pytest.approx((0.2546, 0.0984, 0.4225), abs=3e-4)
+    assert printed(none.between) == pytest.approx((0.0412, 0.0001, 0.1219), abs=1e-4)
+    assert printed(none.per_minute_between) == pytest.approx((0.0135, 0.0000, 0.0390), abs=1e-4)
 
 
-def test_a_comparison_each_says_what_independent_comparisons_say():
-    # With one comparison a person the correlation has no bearing, and the rate is Beta(1 + k, 1 + n - k).
-    between = stuck_rates(events({"M1": [(1, 1)] * 3 + [(0, 1)] * 9}))[0].between
-    exact = beta(4, 10)
-    assert between.mean == pytest.approx(exact.mean(), abs=1e-4)
-    assert between.sd == pytest.approx(exact.std(), abs=1e-4)
-    assert exact.cdf(between.hdi_high) - exact.cdf(between.hdi_low) == pytest.approx(0.94, abs=2e-3)
+def test_a_hundred_people_without_an_event_have_a_rate_near_zero():
+    (rate,) = stuck_rates(events({"M1": [(0, 4)] * 100}, exposure_s=60 * 53 / 28))
+    assert printed(rate.between) == pytest.approx((0.0034, 0.0001, 0.0084), abs=1e-4)
+    assert printed(rate.per_minute_between) == pytest.approx((0.0014, 0.0000, 0.0036), abs=1e-4)
 
 
-def test_two_modes_are_told_apart_exactly():
-    table = events({"M1": ELEVEN, "M2": NONE})
-    (contrast,) = stuck_contrasts(table, stuck_rates(table))
-    assert contrast.p_fisher == pytest.approx(2.884e-4, rel=1e-3)
-    rng = np.random.default_rng(1)
-    sampled = (rng.beta(12, 18, 10**6) > rng.beta(1, 29, 10**6)).mean()
-    assert contrast.p_i_above_j == pytest.approx(sampled, abs=1e-4)
+def test_people_who_differ_widen_the_rates_in_people_in_general():
+    alike, apart = (stuck_rates(events({"M1": people}))[0] for people in ([(2, 4)] * 8, [(4, 4), (0, 4)] * 4))
+    assert apart.between.sd > 1.3 * alike.between.sd
+    assert apart.per_minute_between.sd > 1.1 * alike.per_minute_between.sd
+    assert alike.between.hdi_low < 0.5 < alike.between.hdi_high
+    assert alike.per_minute_between.hdi_low < np.log(2) < alike.per_minute_between.hdi_high
+    # These comparisons are the same 16 of 32, whoever they were.
+    assert apart.per_minute.mean == pytest.approx(alike.per_minute.mean, rel=1e-9)
+    assert apart.rate_mean == alike.rate_mean
+
+
+def test_minutes_count_only_where_they_are_known():
+    table = events({"M1": [(1, 4)] * 4})
+    table.rows.loc[::2, "exposure_s"] = np.nan
+    (rate,) = stuck_rates(table)
+    assert rate.exposure_min == pytest.approx(8.0)
+    # The other comparisons count as long as these, not as events in no time.
+    (known,) = stuck_rates(events({"M1": [(1, 4)] * 4}))
+    assert rate.per_minute.mean == pytest.approx(known.per_minute.mean)
 
 
 def test_no_exposure_has_no_rate_per_minute():
-    (rate,) = stuck_rates(events({"M1": [(1, 4)]}, exposure_s=0.0))
-    assert np.isnan(rate.per_minute_mean)
+    (rate,) = stuck_rates(events({"M1": [(1, 4)] * 3}, exposure_s=0.0))
+    assert rate.per_minute is None
+    assert rate.per_minute_between is None
+    assert rate.between is not None
 
 
-def test_one_stratum_is_fishers_test_and_strata_follow_each_person():
-    assert exact_p(np.array([[11, 28]]), np.array([[0, 28]])) == pytest.approx(2.884e-4, rel=1e-3)
-    # One person always stuck, one never: between modes nothing differs within either.
-    assert exact_p(np.array([[4, 4], [0, 4]]), np.array([[4, 4], [0, 4]])) == pytest.approx(1.0)
-    # Each of three people is stuck in the one comparison with the first mode alone: (1/2) ** 3, two-sided.
-    once, never = np.array([[1, 1]] * 3), np.array([[0, 1]] * 3)
-    assert exact_p(once, never) == pytest.approx(0.25)
+def test_nothing_follows_for_people_in_general_if_nobody_knows_who_they_were():
+    table = events({"M1": [(3, 8)]})
+    (rate,) = stuck_rates(replace(table, rows=table.rows.assign(participant="")))
+    assert (rate.participants, rate.between, rate.per_minute_between) == (0, None, None)
+    assert rate.per_minute is not None
 
 
-def test_people_who_differ_widen_the_rate_per_minute_too():
-    alike = stuck_rates(events({"M1": [(2, 4)] * 8}))[0].per_minute_between
-    apart = stuck_rates(events({"M1": [(4, 4), (0, 4)] * 4}))[0].per_minute_between
-    assert alike is not None
-    assert apart is not None
-    assert apart.sd > 1.1 * alike.sd
-    assert alike.hdi_low < 16 / 32 < alike.hdi_high
+def test_a_mode_without_comparisons_has_no_rate_over_people():
+    (rate,) = stuck_rates(events({"M1": NONE}), ("M2",))
+    assert (rate.comparisons, rate.between, rate.per_minute) == (0, None, None)
+    assert (rate.rate_hdi_low, rate.rate_hdi_high) == pytest.approx((0.0, 0.94))

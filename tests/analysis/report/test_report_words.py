@@ -106,8 +106,8 @@ def test_modes_stuck_in_more_of_fewer_comparisons_are_not_said_to_have_fewer(stu
     )
     said = "".join(phrase.text for phrase in lead((), rates, ""))
     assert said == (
-        "The robot got stuck in 2 of 4 comparisons with M0, in 2 of 5 with M1, in 1 of 4 with M2 and "
-        "at no higher rate with 1 more mode."
+        "The robot got stuck in 2 of 4 comparisons with M0 (2 of 6 people), in 2 of 5 with M1 "
+        "(2 of 6 people), in 1 of 4 with M2 (2 of 6 people) and at no higher rate with 1 more mode."
     )
 
 
