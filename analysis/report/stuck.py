@@ -120,6 +120,11 @@ def _rates_in_words(rates: Sequence[StuckRate]) -> str:
             sentence += f"; for people in general, of {_share(r.between)}"
             if r.per_minute_between is not None:
                 sentence += f", and {_rate(r.per_minute_between)} a minute for the median person"
+            if r.per_minute_between is not None and r.stuck == r.comparisons:
+                sentence += (
+                    ", of which only the lower end comes from the comparisons: where each gets stuck, the "
+                    "rate may be any higher one"
+                )
         sentences.append(sentence)
     left = len(some) - _MOST_NAMED
     more = f" {left} more {'mode' if left == 1 else 'modes'} had no higher rate." if left > 0 else ""
@@ -207,8 +212,8 @@ def contrasts_section(contrasts: Sequence[StuckContrast], rates: Sequence[StuckR
         "These people and comparisons: the chance that the rate of mode i is higher, with comparisons "
         "independent, and two-sided exact tests of equal rates. Fisher's takes all comparisons as "
         "independent; the one within people asks how often each person got stuck in all, so that a few "
-        "people who are stuck in everything cannot make a difference between modes. None of the three says "
-        "anything about other people, as a person's comparisons count as so many people's."
+        "people who are stuck in everything cannot make a difference between modes. None of the three speaks "
+        "of other people: a single person with enough comparisons can make them as sure as one likes."
     ]
     over_people = any(not isnan(c.p_i_above_j_people) for c in contrasts)
     if over_people:

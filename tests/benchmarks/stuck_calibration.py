@@ -7,7 +7,7 @@ that one mode's rate is higher as many must be right as their chances say.
 Equality: two modes that get people stuck equally often, with people who differ, each in a way of their own
 under either mode. How often is a difference found at a level of 5 %?
 
-    python tests/benchmarks/stuck_calibration.py --people 7 --comparisons 4 --replicates 2000
+    python tests/benchmarks/stuck_calibration.py --people 7 --comparisons 4 --replicates 1000
 
 Exits with 1 if a coverage or an ECDF lies outside its band, or a test by people errs too often.
 """
@@ -196,12 +196,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--people", type=int, default=7)
     parser.add_argument("--comparisons", type=int, default=4, help="of each person with a mode")
-    parser.add_argument("--replicates", type=int, default=1000)
+    parser.add_argument("--replicates", type=int, default=1000, help="of the calibration")
+    parser.add_argument("--equal", type=int, default=1000, help="replicates of each row of the equality")
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
-    design = (asked.people, asked.comparisons, asked.replicates, asked.seed)
-    is_fine = calibration(*design)
-    return 0 if equality(*design) and is_fine else 1
+    is_fine = calibration(asked.people, asked.comparisons, asked.replicates, asked.seed)
+    return 0 if equality(asked.people, asked.comparisons, asked.equal, asked.seed) and is_fine else 1
 
 
 if __name__ == "__main__":

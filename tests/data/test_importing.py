@@ -146,6 +146,15 @@ def stuck_pairs(store: Store) -> dict[tuple[str, str], bool]:
     return {(row.comparison, row.mode): row.stuck for row in rows.itertuples()}
 
 
+def test_nobody_is_a_participant_of_answers_without_participants(store, bring, study, tmp_path):
+    bring("question,mode_a,mode_b,response,comparison\nQ1,M1,M2,A>B,1\nQ1,M2,M3,B>A,2\n")
+    path = write(tmp_path, "comparison,mode,stuck\n1,M1,true\n2,M2,false\n", "stuck.csv")
+    import_stuck(path, study, TEXT, store)
+    rows = store.stuck_table(store.study()).rows
+    assert set(rows["participant"]) == {""}
+    assert rows["stuck"].sum() == 1
+
+
 def test_statements_count_only_the_comparisons_they_name(collected, study, tmp_path):
     path = write(tmp_path, "participant,comparison,mode,stuck\nAnna,1,M1,true\nBea,1,M1,FALSE\n", "stuck.csv")
     assert import_stuck(path, study, TEXT, collected) == 1

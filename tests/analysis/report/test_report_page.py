@@ -90,7 +90,7 @@ def test_the_page_tells_the_order_with_its_chance_and_its_limits(study_page, stu
     assert "“most responsive”" in words
     assert "which isn't better" in words
     assert "6 participants are few" in words
-    assert "in 5 of 24 comparisons with M1 and in none with M2 and M3" in words
+    assert "in 5 of 24 comparisons with M1 (2 of 6 people) and in none with M2 and M3" in words
     assert study_case.table.sha256 in words
     assert "Bradley, R. A. and Terry, M. E. (1952)" in words
 

@@ -42,8 +42,8 @@ def test_rates_are_named_by_whom_they_speak_of():
     text = in_words(table_of(FOUR_PEOPLE))
     assert text.startswith(
         "M1: stuck in 11 of 28 comparisons and with 4 of 7 people. For these people and comparisons that is "
-        "a share of 40 % (24 to 57 %); for people in general, of 41 % (18 to 65 %), and 0.27 (0.00 to 0.70) a "
-        "minute for the median person."
+        "a share of 40 % (24 to 57 %); for people in general, of 41 % (18 to 65 %), and 0.27 (0.00 to 0.70) "
+        "a minute for the median person."
     )
 
 
@@ -91,9 +91,15 @@ def test_modes_that_nobody_got_stuck_under_are_not_compared():
 def test_never_stuck_has_a_limit_for_these_comparisons_and_one_for_people():
     assert in_words(table_of(NEVER)) == (
         "The robot never got stuck under any mode. That does not make a rate 0: with so many comparisons "
-        "rates of up to 9 % of the comparisons go with it, if comparisons are independent, and of up to 12 % in "
-        "people in general."
+        "rates of up to 9 % of the comparisons go with it, if comparisons are independent, and of up to 12 % "
+        "in people in general."
     )
+
+
+def test_a_rate_that_every_comparison_is_stuck_at_has_only_a_lower_end():
+    text = in_words(table_of({"M1": (4,) * 7, "M2": (0,) * 7}))
+    assert "(0.46 to 36.10) a minute for the median person, of which only the lower end comes from" in text
+    assert "only the lower end" not in in_words(table_of(FOUR_PEOPLE))
 
 
 def test_the_lead_says_what_happened_and_what_is_likely_of_people():
