@@ -1,8 +1,12 @@
 """What the console calls the modes before unblinding."""
 
-from app.console.findings import ranking_at_a_glance
+import pandas as pd
+import pytest
+from scipy.stats import beta
+
+from app.console.findings import ranking_at_a_glance, stuck_at_a_glance
 from app.console.labels import coded_labels
-from data.responses import QuestionScale, ResponseTable
+from data.responses import QuestionScale, ResponseTable, StuckTable
 from data.study_file import parse_study, read_study, study_text
 
 
@@ -24,8 +28,6 @@ def test_which_mode_is_x_differs_from_study_to_study() -> None:
 
 
 def test_a_reason_not_to_rank_names_no_mode_while_blinded() -> None:
-    import pandas as pd
-
     rows = pd.DataFrame(
         {
             "participant": ["p"] * 2,
@@ -47,3 +49,14 @@ def test_a_reason_not_to_rank_names_no_mode_while_blinded() -> None:
     assert "M" not in question.reason
     (open_question,) = ranking_at_a_glance(table, {name: name for name in table.modes})
     assert "M3" in open_question.reason
+
+
+def test_stuck_rates_stand_under_their_labels_and_count_comparisons_as_independent() -> None:
+    rows = [(f"p{k}", f"p{k}.c{c}", "M1", c < k, 60.0) for k in range(4) for c in range(4)]
+    columns = ["participant", "comparison", "mode", "stuck", "exposure_s"]
+    table = StuckTable(pd.DataFrame(rows, columns=columns))
+    known, untried = stuck_at_a_glance(table, {"M1": "X", "M2": "Y"})
+    assert (known.label, known.stuck, known.comparisons) == ("X", 6, 16)
+    assert known.rate == pytest.approx(7 / 18)
+    assert beta(7, 11).cdf(known.high) - beta(7, 11).cdf(known.low) == pytest.approx(0.94)
+    assert (untried.label, untried.comparisons, untried.rate) == ("Y", 0, 0.5)
