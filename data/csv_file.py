@@ -7,7 +7,7 @@ every row. Anything else is an error that says where, never a guess.
 import csv
 import hashlib
 import io
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -18,6 +18,7 @@ import pyarrow as pa
 import pyarrow.csv
 
 from data.errors import InputError
+from data.labels import as_known, plain_or_quoted, quoted
 
 if TYPE_CHECKING:
     import _csv
@@ -51,13 +52,20 @@ class Column:
 
 @dataclass(frozen=True)
 class CsvFile:
-    """A CSV file as read, all cells as text."""
+    """A CSV file as read, all cells as text.
+
+    Attributes
+    ----------
+    notes : tuple of str
+        What a reader must know of how it was read, a sentence each.
+    """
 
     path: Path
     content: bytes
     names: tuple[str, ...]
     columns: dict[str, Column]
     rows: int
+    notes: tuple[str, ...] = ()
 
     @property
     def sha256(self) -> str:
@@ -71,7 +79,15 @@ class CsvFile:
 
     def error(self, row: int, column: str, message: str) -> InputError:
         """The error for a cell; ``row`` counts from 0 below the header."""
-        return InputError(f"{self.path}: line {_line_of_row(self.content, row)}, {column}: {message}")
+        return InputError(f"{self.path}: line {self.line(row)}, {column}: {message}")
+
+    def line(self, row: int) -> int:
+        """The line in the file on which a row begins; ``row`` counts from 0 below the header."""
+        return self.lines((row,))[0]
+
+    def lines(self, rows: Sequence[int]) -> tuple[int, ...]:
+        """The lines on which rows begin, in one pass through the file."""
+        return _lines_of_rows(self.content, rows)
 
     def check_each(self, column: str, problem: Callable[[str], str | None]) -> None:
         """Raise for the first row whose text has a problem; each distinct text is looked at once."""
@@ -83,8 +99,11 @@ class CsvFile:
                 raise self.error(texts.first_row(value), column, said)
 
 
-def read_csv_file(path: Path, required: Sequence[str], kind: str) -> CsvFile:
+def read_csv_file(path: Path, required: Sequence[str], kind: str, optional: Sequence[str] = ()) -> CsvFile:
     """Read a CSV file.
+
+    A column whose name differs from a known one only by blanks, characters that cannot be seen or capital
+    letters is read as that one, and a note says so.
 
     Parameters
     ----------
@@ -93,6 +112,8 @@ def read_csv_file(path: Path, required: Sequence[str], kind: str) -> CsvFile:
         Columns that must be there; others are read as well.
     kind : str
         What the rows are, for the error about a header without rows, e.g. ``responses``.
+    optional : sequence of str
+        Further columns whose names have a meaning.
 
     Raises
     ------
@@ -101,13 +122,13 @@ def read_csv_file(path: Path, required: Sequence[str], kind: str) -> CsvFile:
     """
     content = _read_bytes(path)
     try:
-        names, parts, rows = _parse(path, content, required)
+        names, notes, parts, rows = _parse(path, content, required, optional)
     except csv.Error as error:
         raise InputError(f"{path}: line {_line_of_csv_error(content)}: not valid CSV: {error}") from None
     if rows == 0:
         raise InputError(f"{path}: line 1: a header without rows: there are no {kind}")
     columns = {name: _column(chunks) for name, chunks in zip(names, parts, strict=True)}
-    return CsvFile(path, content, names, columns, rows)
+    return CsvFile(path, content, names, columns, rows, notes)
 
 
 def _column(chunks: pa.ChunkedArray) -> Column:
@@ -119,21 +140,24 @@ def _column(chunks: pa.ChunkedArray) -> Column:
 
 
 def _parse(
-    path: Path, content: bytes, required: Sequence[str]
-) -> tuple[tuple[str, ...], list[pa.ChunkedArray], int]:
-    """The header, the columns as dictionaries, and the number of rows."""
+    path: Path, content: bytes, required: Sequence[str], optional: Sequence[str]
+) -> tuple[tuple[str, ...], tuple[str, ...], list[pa.ChunkedArray], int]:
+    """The header, notes on it, the columns as dictionaries, and the number of rows."""
     records = _records(content)
-    names = tuple(next(records, ()))
-    _check_header(path, names, required)
+    header = tuple(next(records, ()))
+    known = as_known(header, (*required, *optional))
+    names = tuple(known.get(name, name) for name in header)
+    notes = _about_columns(known)
+    _check_header(path, header, names, required)
     table = _parse_plain(content)
     if table is not None:
-        return names, table.columns, table.num_rows
+        return names, notes, table.columns, table.num_rows
     parts: list[list[pa.Array]] = [[] for _ in names]
     rows = 0
     while chunk := list(islice(records, _CHUNK)):
         if set(map(len, chunk)) != {len(names)}:
             place = next(k for k, record in enumerate(chunk) if len(record) != len(names))
-            line = _line_of_row(content, rows + place)
+            line = _lines_of_rows(content, (rows + place,))[0]
             cells = len(chunk[place])
             raise InputError(
                 f"{path}: line {line}: {cells} {'cell' if cells == 1 else 'cells'}, "
@@ -142,7 +166,14 @@ def _parse(
         for part, texts in zip(parts, zip(*chunk, strict=True), strict=True):
             part.append(pa.array(texts, pa.string()).dictionary_encode())
         rows += len(chunk)
-    return names, [pa.chunked_array(part, _TEXTS) for part in parts], rows
+    return names, notes, [pa.chunked_array(part, _TEXTS) for part in parts], rows
+
+
+def _about_columns(known: Mapping[str, str]) -> tuple[str, ...]:
+    if not known:
+        return ()
+    pairs = ", ".join(f"{quoted(name)} as {column}" for name, column in known.items())
+    return (f"Column names were read without blanks and capital letters: {pairs}.",)
 
 
 def _parse_plain(content: bytes) -> pa.Table | None:
@@ -165,15 +196,13 @@ def _parse_plain(content: bytes) -> pa.Table | None:
 
 def _listed(names: Sequence[str]) -> str:
     """Column names on one line, however odd they are."""
-    return ", ".join(shown(" ".join(name.split())) or "(without name)" for name in names)
+    return ", ".join(plain_or_quoted(name) if name else "(without name)" for name in names)
 
 
-def shown(text: str) -> str:
-    """A text as it is quoted in an error: not longer than a line can bear."""
-    return text if len(text) <= 60 else f"{text[:57]}..."
-
-
-def _check_header(path: Path, names: tuple[str, ...], required: Sequence[str]) -> None:
+def _check_header(
+    path: Path, header: tuple[str, ...], names: tuple[str, ...], required: Sequence[str]
+) -> None:
+    """Every required column is there, and no column twice; ``names`` are those of the header as read."""
     for name in required:
         if name not in names:
             other = next((mark for mark in (";", "\t") if len(names) == 1 and mark in names[0]), None)
@@ -181,7 +210,11 @@ def _check_header(path: Path, names: tuple[str, ...], required: Sequence[str]) -
             raise InputError(f"{path}: line 1: the column {name} is missing; found: {_listed(names)}{hint}")
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"{path}: line 1: the column {_listed([name])} is there twice")
+            spelled = dict.fromkeys(
+                as_written for as_written, n in zip(header, names, strict=True) if n == name
+            )
+            how = f", as {' and '.join(map(quoted, spelled))}" if len(spelled) > 1 else ""
+            raise InputError(f"{path}: line 1: the column {_listed([name])} is there twice{how}")
 
 
 def _read_bytes(path: Path) -> bytes:
@@ -221,17 +254,21 @@ def _records(content: bytes) -> Iterator[list[str]]:
     return filter(None, _reader(content))
 
 
-def _line_of_row(content: bytes, row: int) -> int:
-    """The line in the file on which a row begins; a cell may go over several lines."""
+def _lines_of_rows(content: bytes, rows: Sequence[int]) -> tuple[int, ...]:
+    """The line on which each row begins; a cell may go over several lines."""
     reader = _reader(content)
-    begins, found = 1, -1
+    begins, row, last = 1, -2, max(rows)
+    line_of: dict[int, int] = {}
     for record in reader:
         if record:
-            found += 1
-            if found == row + 1:
-                return begins
+            row += 1
+            if row in rows:
+                line_of[row] = begins
+            if row == last:
+                break
         begins = reader.line_num + 1
-    return begins
+    # A row beyond the last record is where the file ends.
+    return tuple(line_of.get(row, begins) for row in rows)
 
 
 def _line_of_csv_error(content: bytes) -> int:

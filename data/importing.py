@@ -8,7 +8,7 @@ import json
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -17,9 +17,11 @@ from typing import get_args
 import pandas as pd
 from sqlalchemy import select
 
+from data.batches import Repeats, UnnamedAnswer, batch_name, earlier_batches, repetitions, unnamed_id
 from data.errors import InputError
 from data.records import Comparison, Participant, Slot, Source, StuckEvent, Trial
 from data.response_csv import read_response_csv
+from data.responses import ResponseTable
 from data.store import Store, StoredStudy
 from data.store.rows import every, first, insert_all
 from data.store.tables import comparisons as comparison_rows
@@ -31,15 +33,32 @@ LARGEST_IMPORT = 200_000
 """Responses; a store keeps each of them as a row of its own."""
 
 _SAFE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,59}")
+_OWN_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,119}")
 _COLUMNS = ["question", "mode_a", "mode_b", "response", "count", "comparison", "repetition", "check"]
 
 
-def import_responses(path: Path, study: Study, toml_text: str, store: Store) -> int:
+def import_responses(
+    path: Path,
+    study: Study,
+    toml_text: str,
+    store: Store,
+    *,
+    repeats: Repeats | None = None,
+    note: Callable[[str], None] = lambda text: None,
+) -> int:
     """Add the answers of a response CSV to a study in a store.
 
-    Rows of one participant with the same ``comparison`` belong together. Where a file names no
-    comparisons, rows with the same pair and repetition do; a second answer to the same question, or
-    a count above 1, then begins another comparison. Answers without a participant are kept as pooled.
+    Rows of one participant with the same ``comparison`` belong together. Rows without are a batch of their
+    own (``data.batches``): those with the same pair and repetition belong together, and a second answer to
+    the same question, or a count above 1, begins another comparison. Answers without a participant are kept
+    as pooled.
+
+    Parameters
+    ----------
+    repeats : {"continues", "another batch"}, optional
+        What the file is if it repeats rows of an earlier one.
+    note : callable, optional
+        Called with each sentence on how the file was read.
 
     Returns
     -------
@@ -49,40 +68,114 @@ def import_responses(path: Path, study: Study, toml_text: str, store: Store) -> 
     Raises
     ------
     InputError
-        If the file is wrong, or does not fit what the store has of the study.
+        If the file is wrong, does not fit what the store has of the study, or repeats an earlier file and
+        ``repeats`` does not say what it is.
     """
     table = read_response_csv(path, study)
     total = int(table.rows["count"].sum())
     if total > LARGEST_IMPORT:
         raise InputError(f"{path}: {total} responses; at most {LARGEST_IMPORT} can be imported at once")
+    for text in table.notes:
+        note(text)
     with store.transaction():
         stored = store.add_study(study, toml_text)
         if _was_imported(store, stored, "responses", table.sha256):
+            note("This very file was imported before: nothing is added.")
             return 0
         _refuse_to_mix_pooled(store, stored, path, table.has_participants)
+        batch = _batch(store, stored, path, table, repeats, note)
         added = 0
         for label in table.rows["participant"].unique():
             of_them = table.rows[table.rows["participant"] == label]
             for source in get_args(Source):
                 rows = of_them[of_them["source"] == source]
                 if len(rows):
-                    given = _Answers(store, stored, path, str(label), source, not table.has_participants)
+                    given = _Answers(store, stored, path, str(label), source, table.has_participants, batch)
                     given.read(rows)
                     added += given.write()
         _remember(store, stored, "responses", table.sha256, added)
         return added
 
 
+def _batch(
+    store: Store,
+    study: StoredStudy,
+    path: Path,
+    table: ResponseTable,
+    repeats: Repeats | None,
+    note: Callable[[str], None],
+) -> str:
+    """The name of the batch that the rows without a comparison belong to."""
+    own = batch_name(table.sha256)
+    rows = table.rows[table.rows["comparison"] == ""]
+    if rows.empty:
+        if repeats is not None:
+            raise InputError(
+                f"{path}: every row names its comparison: --continues and --another-batch are for files that "
+                "do not"
+            )
+        return own
+    earlier = earlier_batches(store, study)
+    answers = _unnamed_answers(store, study, table, rows)
+    repeated = repetitions(answers, earlier)
+    if repeats == "another batch" or not repeated:
+        if repeats == "continues":
+            raise InputError(f"{path}: --continues: it repeats no file that was imported before")
+        if earlier:
+            note("The file names no comparisons: its rows are further ones, beside those in the store.")
+        return own
+    first = repeated[0]
+    when = f" (imported {first.batch.at:%Y-%m-%d %H:%M})" if first.batch.at is not None else ""
+    alike = f"{first.rows} of its {len(answers)} answers are as in an earlier file{when}"
+    if repeats is None:
+        raise InputError(
+            f"{path}: {alike}: add --continues if it is that file, grown, or --another-batch if these are "
+            "other answers; in the file, a column comparison decides it"
+        )
+    rest = Counter(answers) - Counter(first.batch.answers)
+    if any(Counter(other.batch.answers) <= rest for other in repeated[1:]):
+        raise InputError(
+            f"{path}: --continues: it holds the answers of several earlier files, and can continue one: a "
+            "column comparison says which answers are the same"
+        )
+    note(f"{alike}, and are not added again.")
+    return first.batch.name
+
+
+def _unnamed_answers(
+    store: Store, study: StoredStudy, table: ResponseTable, rows: pd.DataFrame
+) -> list[UnnamedAnswer]:
+    """The answers of rows without a comparison, one each, in order."""
+    ids: dict[str, str] = {}
+    answers: list[UnnamedAnswer] = []
+    columns = ["participant", "source", *_COLUMNS]
+    for person, source, question, a, b, answer, count, _, repetition, check in rows[columns].itertuples(
+        index=False
+    ):
+        label = str(person) if table.has_participants else f"pooled-{source}"
+        if label not in ids:
+            ids[label] = _participant_id(store, study, label)
+        answers += [UnnamedAnswer(ids[label], question, a, b, answer, int(repetition), bool(check))] * count
+    return answers
+
+
 class _Answers:
     """One participant's answers on their way into the store."""
 
     def __init__(
-        self, store: Store, study: StoredStudy, path: Path, label: str, source: Source, pooled: bool
+        self,
+        store: Store,
+        study: StoredStudy,
+        path: Path,
+        label: str,
+        source: Source,
+        has_participants: bool,
+        batch: str,
     ) -> None:
-        self.store, self.path, self.label = store, path, label
+        self.store, self.path, self.label, self.batch = store, path, label, batch
         self.at = store.clock()
-        self.who = _participant_id(store, study, f"pooled-{source}" if pooled else label)
-        self._join(study, source, pooled)
+        self.who = _participant_id(store, study, label if has_participants else f"pooled-{source}")
+        self._join(study, source, pooled=not has_participants)
         self.known = {comparison.id: comparison for comparison in store.comparisons(participant=self.who)}
         self.new: list[Comparison] = []
         self.position = max((c.position for c in self.known.values()), default=0)
@@ -102,23 +195,20 @@ class _Answers:
                 raise InputError(f"{self.path}: participant {self.label!r} is both human and simulated")
 
     def read(self, rows: pd.DataFrame) -> None:
-        """Sort rows into comparisons, refusing those that contradict each other."""
+        """Sort rows into comparisons, refusing those that contradict what the store has of them."""
         for question, a, b, answer, count, name, repetition, check in rows[_COLUMNS].itertuples(index=False):
             where = f"{self.path}: participant {self.label!r}, comparison {name!r}, {question}"
-            if name and count > 1:
-                raise InputError(f"{where}: one comparison has one answer to a question, not {count}")
             for _ in range(count):
                 shown = (a, b, str(repetition), str(check))
                 comparison_id = _comparison_id(self.who, name) if name else self._unnamed(shown, question)
                 self._show(comparison_id, int(repetition), a, b, bool(check), where)
-                if self.answers.setdefault((comparison_id, question), answer) != answer:
-                    raise InputError(f"{where}: two different answers")
+                self.answers[comparison_id, question] = answer
 
     def _unnamed(self, shown: tuple[str, ...], question: str) -> str:
         """The id of a comparison that the file gives no name: what was shown, and how often before."""
         self.unnamed[(*shown, question)] += 1
         digest = sha256(json.dumps(shown).encode()).hexdigest()[:10]
-        return f"{self.who}.u{digest}.{self.unnamed[(*shown, question)]}"
+        return unnamed_id(self.who, self.batch, digest, self.unnamed[(*shown, question)])
 
     def _show(self, comparison_id: str, repetition: int, a: str, b: str, check: bool, where: str) -> None:
         known = self.known.get(comparison_id)
@@ -130,7 +220,9 @@ class _Answers:
             self.known[comparison_id] = known
             self.new.append(known)
         elif (known.mode_a, known.mode_b, known.check) != (a, b, check):
-            raise InputError(f"{where}: shows {a} and {b}, but elsewhere {known.mode_a} and {known.mode_b}")
+            raise InputError(
+                f"{where}: shows {a} and {b}, but in the store {known.mode_a} and {known.mode_b}"
+            )
 
     def write(self) -> int:
         """Add what the store lacks; returns how many responses that is."""
@@ -155,11 +247,24 @@ class _Answers:
         return len(new)
 
 
-def import_stuck(path: Path, study: Study, toml_text: str, store: Store) -> int:
+def import_stuck(
+    path: Path,
+    study: Study,
+    toml_text: str,
+    store: Store,
+    *,
+    note: Callable[[str], None] = lambda text: None,
+) -> int:
     """Add stuck events that were found elsewhere to comparisons in a store.
 
     The columns are described in ``data.stuck_csv``. Every comparison that the file speaks of becomes
-    two trials, one a mode, of unknown duration and with the source ``external``.
+    two trials, one a mode, of unknown duration and with the source ``external``. Events that an earlier file
+    brought are not added again.
+
+    Parameters
+    ----------
+    note : callable, optional
+        Called with each sentence on how the file was read.
 
     Returns
     -------
@@ -172,6 +277,8 @@ def import_stuck(path: Path, study: Study, toml_text: str, store: Store) -> int:
         If the file is wrong, or names comparisons that the store does not have.
     """
     found = read_stuck_csv(path, study)
+    for text in found.notes:
+        note(text)
     with store.transaction():
         stored = store.add_study(study, toml_text)
         if _was_imported(store, stored, "stuck", found.file.sha256):
@@ -193,9 +300,10 @@ def import_stuck(path: Path, study: Study, toml_text: str, store: Store) -> int:
             here = events.setdefault(comparison.id, _Events())
             if said.event is not None:
                 (here.under_a if said.mode == comparison.mode_a else here.under_b).append(said.event)
-        for comparison_id, here in events.items():
-            _add_external_trials(store, comparisons[comparison_id], here)
-        added = sum(len(here.under_a) + len(here.under_b) for here in events.values())
+        added = sum(_add_external_trials(store, comparisons[key], here) for key, here in events.items())
+        named = sum(len(here.under_a) + len(here.under_b) for here in events.values())
+        if named > added:
+            note(f"{named - added} of {named} events are in the store already, and are not added again.")
         _remember(store, stored, "stuck", found.file.sha256, added)
         return added
 
@@ -217,15 +325,23 @@ def _comparison_of(
     return comparisons.get(_comparison_id(who, said.comparison))
 
 
-def _add_external_trials(store: Store, comparison: Comparison, events: _Events) -> None:
-    """One trial a mode, unless the store has trials already and nothing is new."""
+def _add_external_trials(store: Store, comparison: Comparison, events: _Events) -> int:
+    """One trial a mode, unless the store has trials already and nothing is new; gives the events added."""
     earlier = store.trials(comparison=comparison.id)
     slots: tuple[Slot, ...] = get_args(Slot)
+    added = 0
     for slot in slots:
-        found = tuple(events.under_a if slot == "A" else events.under_b)
         own = [trial for trial in earlier if trial.slot == slot]
-        if own and not found:
+        before = Counter(_what(e) for trial in own if trial.source == "external" for e in trial.events)
+        new = []
+        for event in events.under_a if slot == "A" else events.under_b:
+            if before[_what(event)]:
+                before[_what(event)] -= 1
+            else:
+                new.append(event)
+        if own and not new:
             continue
+        added += len(new)
         number = max((trial.number for trial in own), default=0) + 1
         store.add_trial(
             Trial(
@@ -235,13 +351,19 @@ def _add_external_trials(store: Store, comparison: Comparison, events: _Events) 
                 number=number,
                 mode=comparison.mode_of(slot),
                 source="external",
-                outcome="stuck" if any(event.kind == "stuck" for event in found) else "completed",
+                outcome="stuck" if any(event.kind == "stuck" for event in new) else "completed",
                 started_at=comparison.started_at or store.clock(),
                 duration_s=math.nan,
                 seed=0,
-                events=found,
+                events=tuple(new),
             )
         )
+    return added
+
+
+def _what(event: StuckEvent) -> tuple[str, str, float | None]:
+    """What tells an event from another under the same mode in the same comparison."""
+    return event.kind, event.definition, None if math.isnan(event.time_s) else event.time_s
 
 
 def _participant_id(store: Store, study: StoredStudy, label: str) -> str:
@@ -256,7 +378,7 @@ def _participant_id(store: Store, study: StoredStudy, label: str) -> str:
 
 def _comparison_id(participant: str, name: str) -> str:
     """The id that a comparison's name in a file gets; names count within a participant."""
-    if name.startswith(f"{participant}.") and _SAFE.fullmatch(name):
+    if name.startswith(f"{participant}.") and _OWN_ID.fullmatch(name):
         return name
     safe = name if _SAFE.fullmatch(name) else f"x{sha256(name.encode()).hexdigest()[:12]}"
     return f"{participant}.{safe}"

@@ -13,9 +13,12 @@ import numpy as np
 import pandas as pd
 
 from data.answers import ANSWERS, inferred_levels
-from data.csv_file import Column, CsvFile, read_csv_file, shown
+from data.csv_file import Column, CsvFile, read_csv_file
 from data.errors import InputError
+from data.labels import folded, listed_names, quoted
 from data.records import Source
+from data.response_keys import check_keys
+from data.response_names import check_names
 from data.responses import QuestionScale, ResponseTable
 from data.study import Question, Study
 
@@ -51,24 +54,32 @@ def read_response_csv(path: Path, study: Study | None = None) -> ResponseTable:
     InputError
         One line: the file, the line, the column and the valid values.
     """
-    file = read_csv_file(Path(path), REQUIRED, "responses")
+    file = read_csv_file(Path(path), REQUIRED, "responses", OPTIONAL)
     questions = _questions(file, study)
     _check_cells(file, study, questions)
+    notes = list(file.notes) + check_names(file, study)
     check = _truths(file)
     _check_pairs(file, check)
     _check_scales(file, questions)
-    rows = _rows(file, check, study)
+    counts = _numbers(file, "count", 1)
+    keyed = check_keys(file, counts, check, _numbers(file, "repetition", 0))
+    every_row = _rows(file, check, study)
+    counted = keyed.kept & (counts > 0)
+    rows = every_row if counted.all() else every_row[counted].reset_index(drop=True)
     asked = rows.loc[~rows["check"]]
     if asked.empty:
-        raise InputError(f"{path}: all rows are attention checks: there are no responses to rank")
+        why = "all rows are attention checks" if counts.any() else "every count is 0"
+        raise InputError(f"{path}: {why}: there are no responses to rank")
+    modes = study.mode_names if study else _modes_as_they_appear(file, ~check & (counts > 0))
     return ResponseTable(
         rows=rows,
-        modes=study.mode_names if study else _modes_as_they_appear(file, ~check),
-        questions=_scales(rows, set(asked["question"].unique()), study),
+        modes=modes,
+        questions=_scales(every_row, asked, modes, study),
         has_participants="participant" in file.columns,
         is_simulated=bool((rows["source"] == "simulated").any()),
         sha256=file.sha256,
         title=study.title if study else Path(path).stem,
+        notes=(*notes, *keyed.notes, *_about_zeros(every_row, asked, modes, study)),
     )
 
 
@@ -98,7 +109,7 @@ def _check_cells(file: CsvFile, study: Study | None, questions: dict[str, Questi
         "repetition": _repetition_problem,
         "source": lambda text: _is_one_of(text, get_args(Source)) if text else None,
         "check": lambda text: (
-            None if text.lower() in _TRUTH else f"{shown(text)!r} is not one of: true, false"
+            None if text.lower() in _TRUTH else f"{quoted(text)} is not one of: true, false"
         ),
     }
     for column, problem in checks.items():
@@ -115,20 +126,24 @@ def _is_one_of(text: str, valid: tuple[str, ...] | None) -> str | None:
     listed = f"; valid: {', '.join(valid)}" if valid else ""
     if not text.strip():
         return f"empty, but a value is needed{listed}"
-    return f"{shown(text)!r} is not one of: {', '.join(valid)}" if valid and text not in valid else None
+    if not valid or text in valid:
+        return None
+    alike = next((name for name in valid if folded(name) == folded(text)), None)
+    hint = f" (it looks like {quoted(alike)} and is spelled otherwise)" if alike is not None else ""
+    return f"{quoted(text)} is not one of: {', '.join(valid)}{hint}"
 
 
 def _count_problem(text: str) -> str | None:
-    if not _WHOLE.fullmatch(text) or int(text) < 1:
+    if not _WHOLE.fullmatch(text):
         return (
-            f"{shown(text)!r} is not a whole number of at least 1" if text else "empty, but a count is needed"
+            f"{quoted(text)} is not a whole number of at least 0" if text else "empty, but a count is needed"
         )
-    return f"{shown(text)} is more than {LARGEST_COUNT}" if int(text) > LARGEST_COUNT else None
+    return f"{text[:60]} is more than {LARGEST_COUNT}" if int(text) > LARGEST_COUNT else None
 
 
 def _repetition_problem(text: str) -> str | None:
     if text and (not _WHOLE.fullmatch(text) or int(text) >= 2**31):
-        return f"{shown(text)!r} is not a whole number from 0"
+        return f"{quoted(text)} is not a whole number from 0"
     return None
 
 
@@ -150,7 +165,7 @@ def _check_pairs(file: CsvFile, check: np.ndarray) -> None:
         row = int(wrong[0])
         mode = a.values[a.codes[row]]
         raise file.error(
-            row, "mode_b", f"{shown(mode)!r} against itself, and the row is no check (check = true)"
+            row, "mode_b", f"{quoted(mode)} against itself, and the row is no check (check = true)"
         )
 
 
@@ -232,17 +247,53 @@ def _modes_as_they_appear(file: CsvFile, counted: np.ndarray) -> tuple[str, ...]
     return tuple(sorted(appears, key=lambda mode: appears[mode]))
 
 
-def _scales(rows: pd.DataFrame, asked: set[str], study: Study | None) -> tuple[QuestionScale, ...]:
+def _scales(
+    every_row: pd.DataFrame, asked: pd.DataFrame, modes: tuple[str, ...], study: Study | None
+) -> tuple[QuestionScale, ...]:
+    """The questions that were asked; without a study each has the modes of its own rows."""
+    names = set(asked["question"].unique())
     if study is not None:
         return tuple(
             QuestionScale(q.name, q.short, q.wording, q.levels, q.polarity)
             for q in study.questions
-            if q.name in asked
+            if q.name in names
         )
+    # A row with the count 0 says nothing of the modes, but that its answer could have been given.
+    answers = (
+        every_row[["question", "response"]].drop_duplicates().groupby("question", sort=False)["response"]
+    )
+    shown = asked[["question", "mode_a", "mode_b"]].drop_duplicates().groupby("question", sort=False)
     scales = []
-    answered = rows[["question", "response"]].drop_duplicates()
-    for name in answered["question"].unique():
-        if name in asked:
-            levels = inferred_levels(set(answered.loc[answered["question"] == name, "response"]))
-            scales.append(QuestionScale(name, name, name, levels, levels_inferred=True))
+    for name, possible in answers:
+        if name in names:
+            pairs = shown.get_group(name)
+            own = {*pairs["mode_a"], *pairs["mode_b"]}
+            of_its_own = tuple(mode for mode in modes if mode in own) if len(own) < len(modes) else ()
+            levels = inferred_levels(set(possible))
+            scales.append(
+                QuestionScale(str(name), str(name), str(name), levels, levels_inferred=True, modes=of_its_own)
+            )
     return tuple(scales)
+
+
+def _about_zeros(
+    every_row: pd.DataFrame, asked: pd.DataFrame, modes: tuple[str, ...], study: Study | None
+) -> list[str]:
+    """What only rows with the count 0 name: nothing is known of it."""
+    if study is not None or every_row["count"].all():
+        return []
+    notes = []
+    rows = every_row[~every_row["check"]]
+    for what, names, counted in (
+        ("mode", pd.unique(rows[["mode_a", "mode_b"]].to_numpy().ravel()), set(modes)),
+        ("question", rows["question"].unique(), set(asked["question"])),
+    ):
+        silent = [name for name in names if name not in counted]
+        if silent:
+            kind = what if len(silent) == 1 else f"{what}s"
+            is_left = "is" if len(silent) == 1 else "are"
+            notes.append(
+                f"The {kind} {listed_names(silent)} {is_left} named only in rows with the count 0, "
+                f"and {is_left} left out."
+            )
+    return notes

@@ -17,9 +17,12 @@ class QuestionScale:
     Attributes
     ----------
     levels : int
-        2, 3 or 5.
+        2 to 9.
     levels_inferred : bool
         True if the levels were guessed from the answers, since no study was given.
+    modes : tuple of str
+        The modes that the question is about, in the order of the table; empty if it is about all of the
+        table's.
     """
 
     name: str
@@ -28,6 +31,7 @@ class QuestionScale:
     levels: int
     polarity: str = "neutral"
     levels_inferred: bool = False
+    modes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,8 @@ class ResponseTable:
         Hash of the data as read.
     title : str
         What the report calls the study.
+    notes : tuple of str
+        What a reader must know of how the data were read, a sentence each.
     """
 
     rows: pd.DataFrame
@@ -63,6 +69,11 @@ class ResponseTable:
     is_simulated: bool
     sha256: str
     title: str
+    notes: tuple[str, ...] = ()
+
+    def modes_of(self, question: QuestionScale) -> tuple[str, ...]:
+        """The modes that a question is about, in the order of the table."""
+        return question.modes or self.modes
 
     def without(self, comparisons: Collection[str]) -> Self:
         """The same without the answers to some comparisons; modes and questions stay."""

@@ -83,8 +83,14 @@ def test_answers_without_participants_are_refused_where_people_are_known(store, 
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        ("Anna,Q1,M1,M2,A>B,1\nAnna,Q1,M1,M2,B>A,1\n", "'1', Q1: two different answers"),
-        ("Anna,Q1,M1,M2,A>B,1\nAnna,Q2,M2,M1,B>A,1\n", "shows M2 and M1, but elsewhere M1 and M2"),
+        (
+            "Anna,Q1,M1,M2,A>B,1\nAnna,Q1,M1,M2,B>A,1\n",
+            "question 'Q1', has 'A>B' in line 2, but 'B>A' here",
+        ),
+        (
+            "Anna,Q1,M1,M2,A>B,1\nAnna,Q2,M2,M1,B>A,1\n",
+            "line 3, mode_a: comparison '1' of participant 'Anna' has 'M1' in line 2, but 'M2'",
+        ),
         ("Bea,Q1,M1,M2,A>B,1\nAnna,Q7,M1,M2,B>A,1\n", "line 3, question: 'Q7'"),
     ],
 )

@@ -59,7 +59,13 @@ def outcome(path: Path) -> tuple[int, str]:
         (f"{HEADER}\n\n\n", "line 1: a header without rows"),
         ("mode_a,mode_b\nM1,M2\n", "line 1: the column response is missing; found: mode_a, mode_b"),
         ("mode_a;mode_b;response\nM1;M2;A>B\n", "separated by commas, not by ';'"),
-        ("mode_a, mode_b, response\nM1,M2,A>B\n", "the column mode_b is missing"),
+        (
+            "mode_a,modeb,response\nM1,M2,A>B\n",
+            "the column mode_b is missing; found: mode_a, modeb, response",
+        ),
+        ("mode_a,mode\u00a0b,response\nM1,M2,A>B\n", r"found: mode_a, 'mode\xa0b', response"),
+        (f"{HEADER},Mode_A\nM1,M2,A>B,M1\n", "the column mode_a is there twice, as 'mode_a' and 'Mode_A'"),
+        (f"{HEADER},count\nM1,M2,A>B,0\nM1,M2,B>A,0\n", "every count is 0: there are no responses to rank"),
         (f"{HEADER},mode_a\nM1,M2,A>B,M1\n", "line 1: the column mode_a is there twice"),
         (f"{HEADER}\nM1,M2\n", "line 2: 2 cells, but the header has 3 columns"),
         (f"{HEADER}\nM1,M2,A>B\nM1,M2,A>B,\n", "line 3: 4 cells, but the header has 3 columns"),
@@ -92,9 +98,9 @@ def test_a_bad_file_is_one_line_that_says_where(tmp_path, content, message):
 
 
 @pytest.mark.parametrize(
-    "count", ["0", "-1", "1.0", "1.5", "1e3", "+1", "", " 1", "x", "nan", "٣", "1_000", "9" * 19, "9" * 300]
+    "count", ["-1", "1.0", "1.5", "1e3", "+1", "", " 1", "x", "nan", "٣", "1_000", "9" * 19, "9" * 300]
 )
-def test_a_count_that_is_no_positive_integer_is_refused(tmp_path, count):
+def test_a_count_that_is_not_a_whole_number_of_at_least_0_is_refused(tmp_path, count):
     assert "line 3, count: " in error_of(write(tmp_path, f"{HEADER},count\nM1,M2,A>B,2\nM1,M2,A>B,{count}\n"))
 
 
