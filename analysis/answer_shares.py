@@ -69,7 +69,7 @@ def answer_shares(table: ResponseTable, fit: Fit) -> tuple[tuple[PairShares, ...
 
 def _pairs(table: ResponseTable, fit: Fit, question: QuestionFit) -> tuple[PairShares, ...]:
     counts = count_responses(table, question.question)
-    modes, levels = fit.modes, question.question.levels
+    modes, levels = question.mode_names, question.question.levels
     place = np.array([modes.index(mode) for mode in counts.modes])
     shown = np.zeros((len(modes), len(modes), levels), dtype=np.int64)
     np.add.at(shown, (place[counts.mode_a], place[counts.mode_b]), counts.responses)

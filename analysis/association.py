@@ -129,7 +129,9 @@ def associations(table: ResponseTable, fit: Fit, metrics: MetricTable) -> tuple[
     for measure in measures_in(metrics):
         means = _mean_draws(metrics, measure.name, fit.modes, seed)
         for question in fit.questions:
-            n_modes, across = _across_modes(question, means)
+            n_modes, across = _across_modes(
+                question, means[:, [fit.modes.index(m) for m in question.mode_names]]
+            )
             n, rho = _across_comparisons(table, question, metrics, measure.name, seed)
             found.append(
                 Association(

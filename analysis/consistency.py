@@ -78,7 +78,9 @@ def consistencies(table: ResponseTable, seed: int = 2017) -> tuple[Consistency, 
     return tuple(
         found
         for question in table.questions
-        for found in _question(rows[rows["question"] == question.name], table.modes, question, seed)
+        for found in _question(
+            rows[rows["question"] == question.name], table.modes_of(question), question, seed
+        )
     )
 
 

@@ -46,8 +46,10 @@ def print_ranking(fit: Fit, console: Console, *, is_simulated: bool = False) -> 
     said = _about_the_sampler(fit)
     if any(question.ranked for question in fit.questions):
         key = f"{signs[0] * 3} 94 %, {signs[1] * 3} 50 %, {signs[2]} mean, {signs[3]} no preference"
+        equal = {f"{1 / len(q.modes):.2f}" for q in fit.questions if q.ranked}
+        key += f" ({equal.pop()})" if len(equal) == 1 else ""
         first = f"“First” is the chance to rank first; from {100 * LIKELY:.0f} % on it is called likely."
-        said = [f"{key} ({1 / len(fit.modes):.2f}); bars from 0 to {top:.2g}", first, *said]
+        said = [f"{key}; bars from 0 to {top:.2g}", first, *said]
     for sentence in said:
         console.print(Text(_printable(sentence, console), style="dim"))
 

@@ -23,7 +23,7 @@ class Counts:
     Attributes
     ----------
     modes : tuple of str
-        All modes of the response table, sorted; ``mode_a`` and ``mode_b`` index them.
+        All modes that the question is about, sorted; ``mode_a`` and ``mode_b`` index them.
     participants : tuple of str
         Sorted; one empty name if the participants are unknown or pooled.
     participant, mode_a, mode_b : ndarray of int64, shape (cell,)
@@ -96,6 +96,11 @@ class Counts:
             np.add.at(table, (self.mode_b, self.mode_a), middle)
         return table
 
+    def compared(self) -> NDArray[np.int64]:
+        """How often each pair was answered: ndarray of int64, shape (mode, mode), symmetric."""
+        wins = self.wins()
+        return wins + wins.T + self.ties()
+
 
 def count_responses(table: ResponseTable, question: QuestionScale) -> Counts:
     """Count the responses to one question; attention checks stay out.
@@ -103,11 +108,11 @@ def count_responses(table: ResponseTable, question: QuestionScale) -> Counts:
     Raises
     ------
     InputError
-        If an answer is not on the question's scale, a mode is not one of the table's, or a mode
+        If an answer is not on the question's scale, a mode is not one of the question's, or a mode
         is compared with itself in a row that is no check.
     """
     rows = table.rows[(table.rows["question"] == question.name) & ~table.rows["check"].astype(bool)]
-    modes = tuple(sorted(table.modes))
+    modes = tuple(sorted(table.modes_of(question)))
     scale = SCALES[question.levels]
     level = _codes(rows["response"], scale, f"question {question.name}: response")
     mode_a = _codes(rows["mode_a"], modes, f"question {question.name}: mode_a")

@@ -98,12 +98,11 @@ def covariate_effects(fit: Fit, metrics: MetricTable | None) -> tuple[CovariateE
     why."""
     if metrics is None or covariate_refusal(fit, metrics):
         return ()
-    known = _standardised(fit.modes, metrics)
     return tuple(
         _effect(question.question.name, metric, sd, x, question.draws, fit.settings.prior_sd)
         for question in fit.questions
-        if question.ranked and question.draws is not None
-        for metric, (x, sd) in known.items()
+        if question.ranked and question.draws is not None and len(question.mode_names) >= FEWEST_MODES
+        for metric, (x, sd) in _standardised(question.mode_names, metrics).items()
     )
 
 

@@ -55,7 +55,9 @@ class Equivalence:
 
 def equivalences(fit: Fit) -> tuple[Equivalence, ...]:
     """Every pair of modes of every ranked question, in the order of the fit."""
-    return tuple(e for question in fit.questions if question.ranked for e in _pairs(question, fit.modes))
+    return tuple(
+        e for question in fit.questions if question.ranked for e in _pairs(question, question.mode_names)
+    )
 
 
 def _pairs(question: QuestionFit, modes: tuple[str, ...]) -> list[Equivalence]:

@@ -82,7 +82,10 @@ def fit(table: ResponseTable, settings: FitSettings | None = None, progress: Pro
     tell(0, total, "sampling")
     sampled = _sampled([prepared[k].problem for k in askable], settings, tell)
     by_question = dict(zip(askable, sampled, strict=True))
-    fits = tuple(_question_fit(p, table.modes, by_question.get(k)) for k, p in enumerate(prepared))
+    fits = tuple(
+        _question_fit(p, table.modes_of(p.counts.question), by_question.get(k))
+        for k, p in enumerate(prepared)
+    )
     is_hierarchical = table.has_participants and not settings.pooled and settings.engine != "gibbs"
     return Fit(
         questions=fits,
@@ -109,7 +112,7 @@ def _validate(table: ResponseTable, settings: FitSettings) -> None:
     if settings.engine == "gibbs" and settings.link != "cumulative":
         raise InputError(f"link: {settings.link} is not known to the engine gibbs; valid: cumulative")
     if not (math.isfinite(settings.prior_sd) and settings.prior_sd > 0):
-        raise InputError(f"prior_sd: {settings.prior_sd!r} is no positive number")
+        raise InputError(f"prior_sd: {settings.prior_sd!r} is not a positive number")
     if not 0 < settings.target_accept < 1:
         raise InputError(f"target_accept: {settings.target_accept!r} is not between 0 and 1")
     if settings.seed < 0:
@@ -134,7 +137,7 @@ def _prepare(table: ResponseTable, question: QuestionScale, settings: FitSetting
     is_gibbs = settings.engine == "gibbs"
     examination = examine(
         counts,
-        table.modes,
+        table.modes_of(question),
         has_participants=table.has_participants,
         side_effect=settings.side_effect and not is_gibbs,
     )
@@ -254,7 +257,7 @@ def _divergences(fits: Sequence[QuestionFit], settings: FitSettings) -> int:
 
 
 def _about_the_whole(table: ResponseTable, settings: FitSettings) -> tuple[str, ...]:
-    said = []
+    said = list(table.notes)
     if not table.has_participants:
         said.append(
             "The answers name no participants, so they are taken as independent: if people answered more "

@@ -9,11 +9,10 @@ from scipy.sparse.csgraph import connected_components
 
 from analysis.counts import Counts
 from analysis.figures.labels import isolated
+from analysis.groups import Group, groups_of, listed
 
 FEW_COMPARISONS = 10
 """Fewer comparisons of a mode than this bring a warning. Untuned: a day's pilot, not a study."""
-_LISTED = 6
-"""Names or pairs that a sentence lists before it counts the rest."""
 
 Pair = tuple[str, str]
 
@@ -52,7 +51,7 @@ def examine(
     place = [counts.modes.index(mode) for mode in modes]
     wins, ties = counts.wins()[np.ix_(place, place)], counts.ties()[np.ix_(place, place)]
     compared = wins + wins.T + ties
-    groups = _groups(modes, compared)
+    groups = groups_of(modes, compared)
     if len(groups) > 1:
         missing = _between(groups, modes)
         return Examination(_refusal(counts, groups, missing), missing, ())
@@ -77,27 +76,23 @@ def examine(
     return Examination("", (), tuple(warnings))
 
 
-def _groups(modes: tuple[str, ...], compared: NDArray[np.int64]) -> list[list[str]]:
-    """Modes that comparisons connect, directly or through others."""
-    n, label = connected_components(csr_array(compared), directed=False)
-    return [[mode for mode, group in zip(modes, label, strict=True) if group == g] for g in range(n)]
-
-
-def _between(groups: list[list[str]], modes: tuple[str, ...]) -> tuple[Pair, ...]:
-    group_of = {mode: g for g, group in enumerate(groups) for mode in group}
+def _between(groups: tuple[Group, ...], modes: tuple[str, ...]) -> tuple[Pair, ...]:
+    group_of = {mode: g for g, group in enumerate(groups) for mode in group.modes}
     return tuple((a, b) for i, a in enumerate(modes) for b in modes[i + 1 :] if group_of[a] != group_of[b])
 
 
-def _refusal(counts: Counts, groups: list[list[str]], missing: tuple[Pair, ...]) -> str:
+def _refusal(counts: Counts, groups: tuple[Group, ...], missing: tuple[Pair, ...]) -> str:
     if counts.n == 0:
         return "There are no answers to this question."
-    needed = f"Missing: {_listed([f'{isolated(a)} against {isolated(b)}' for a, b in missing], 'or')}"
-    unseen = [group[0] for group in groups if len(group) == 1]
+    needed = f"Missing: {listed([f'{isolated(a)} against {isolated(b)}' for a, b in missing], 'or')}"
+    unseen = [group.modes[0] for group in groups if len(group.modes) == 1]
+    way_out = "“elbowroom report --largest-group” ranks the largest group alone."
     if len(unseen) == len(groups) - 1:
         was = "was" if len(unseen) == 1 else "were"
-        return f"{_named(unseen)} {was} never compared with another mode. {needed}."
-    parts = "; ".join(_named(group) for group in groups)
-    return f"The modes fall into {len(groups)} groups never compared with each other: {parts}. {needed}."
+        return f"{_named(unseen)} {was} never compared with another mode. {needed}. {way_out}"
+    parts = "; ".join(_named(list(group.modes)) for group in groups)
+    apart = f"The modes fall into {len(groups)} groups never compared with each other"
+    return f"{apart}: {parts}. {needed}. {way_out}"
 
 
 def _separation(modes: tuple[str, ...], wins: NDArray[np.int64], ties: NDArray[np.int64]) -> list[str]:
@@ -145,14 +140,7 @@ def _sides(counts: Counts) -> list[str]:
 
 
 def _named(modes: list[str]) -> str:
-    return _listed([isolated(mode) for mode in modes])
-
-
-def _listed(names: list[str], last: str = "and") -> str:
-    shown = names[:_LISTED]
-    if len(names) > _LISTED:
-        return f"{', '.join(shown)} {last} {len(names) - _LISTED} more"
-    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} {last} {shown[-1]}"
+    return listed([isolated(mode) for mode in modes])
 
 
 def _are(names: list[str]) -> str:

@@ -190,11 +190,12 @@ def _log_likelihoods(
     table: ResponseTable, settings: FitSettings, draws: Draws, person: int | None = None
 ) -> FloatArray:
     """Of every participant's answers, or of one's, to the one question: (participant, draw)."""
-    counts = count_responses(table, table.questions[0])
+    (question,) = table.questions
+    counts = count_responses(table, question)
     if person is not None:
         counts = of_people(counts, np.arange(len(counts.participants)) == person)
     kept = thinned(draws, _DRAWS)
-    place = [table.modes.index(mode) for mode in counts.modes]
+    place = [table.modes_of(question).index(mode) for mode in counts.modes]
     model = model_of(settings, counts.levels, has_participants=True)
     return log_likelihoods(counts, model, ThinnedDraws(kept.ability[:, place], kept.parameters))
 

@@ -104,30 +104,31 @@ def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int)
             else "The answers name no participants"
         )
         return nothing(f"{why}, so nothing is known of single people's own order.")
-    first = max(range(len(fit.modes)), key=lambda k: question.modes[k].p_best)
+    modes = question.mode_names
+    first = max(range(len(modes)), key=lambda k: question.modes[k].p_best)
     counts = count_responses(table, question.question)
     number = max(_FEWEST_DRAWS, min(_MOST_DRAWS, _MOST_IN_ALL // len(counts.participants)))
     kept, rng = thinned(draws, number), np.random.default_rng(seed)
     new_person = _first_of_new_people(kept, first, rng)
-    if len(fit.modes) > MOST_MODES:
+    if len(modes) > MOST_MODES:
         reason = f"Each participant's own worths are worked out for at most {MOST_MODES} modes."
-        return nothing(reason, fit.modes[first], new_person)
+        return nothing(reason, modes[first], new_person)
     model = model_of(fit.settings, counts.levels, table.has_participants)
-    own, effective = _own_abilities(kept, fit.modes, counts, model, rng)
+    own, effective = _own_abilities(kept, modes, counts, model, rng)
     if effective < FEWEST_POINTS:
         reason = "Each participant's own worths would rest on too few points to be told."
-        return nothing(reason, fit.modes[first], new_person)
+        return nothing(reason, modes[first], new_person)
     is_first = own.argmax(axis=-1) == first
     shares = is_first.mean(axis=0)
     low, high = hdi(shares, HDI_PROBABILITY)
     return Agreement(
         name,
-        fit.modes[first],
+        modes[first],
         float(shares.mean()),
         float(low),
         float(high),
         new_person,
-        _person_worths(counts, fit.modes, own),
+        _person_worths(counts, modes, own),
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.results import Fit, QuestionFit
 
@@ -19,7 +20,8 @@ def posterior_tree(fit: Fit) -> xr.DataTree:
     """Groups ``posterior``, ``sample_stats`` and ``observed_data``; questions are a dimension.
 
     A parameter that only some questions have (``cut_2``) has a question dimension of its own,
-    ``question_<parameter>``, so that there is no padding that a diagnostic would trip over.
+    ``question_<parameter>``, so that there is no padding that a diagnostic would trip over. Abilities and
+    worths of modes that a question is not about are NaN.
     """
     import xarray as xr
 
@@ -47,8 +49,10 @@ def _posterior(fit: Fit, sampled: list[QuestionFit]) -> xr.Dataset:
     import xarray as xr
 
     draws = {q.question.name: q.draws for q in sampled if q.draws is not None}
-    ability = np.stack([d.ability for d in draws.values()], axis=2)
-    worth = np.stack([d.worth for d in draws.values()], axis=2)
+    ability, worth = (
+        np.stack([_over_all(values, q, fit.modes) for q, values in zip(sampled, drawn, strict=True)], axis=2)
+        for drawn in ([d.ability for d in draws.values()], [d.worth for d in draws.values()])
+    )
     axes = ("chain", "draw", "question", "mode")
     coordinates = _coordinates(ability.shape[:2], sampled) | {"mode": list(fit.modes)}
     dataset = xr.Dataset({"ability": (axes, ability), "worth": (axes, worth)}, coordinates)
@@ -59,6 +63,18 @@ def _posterior(fit: Fit, sampled: list[QuestionFit]) -> xr.Dataset:
         dataset = dataset.assign_coords({axis: having})
         dataset[name] = (("chain", "draw", axis), values)
     return dataset
+
+
+def _over_all(
+    values: NDArray[np.float64], question: QuestionFit, modes: tuple[str, ...]
+) -> NDArray[np.float64]:
+    """Draws of a question with an axis for all modes: NaN for those that the question is not about."""
+    own = question.mode_names
+    if own == modes:
+        return values
+    spread = np.full((*values.shape[:2], len(modes)), np.nan)
+    spread[..., [modes.index(mode) for mode in own]] = values
+    return spread
 
 
 def _observed(fit: Fit) -> xr.Dataset:

@@ -89,12 +89,13 @@ def _checks(table: ResponseTable, fit: Fit, question: QuestionFit) -> list[Predi
         counts = counts.collapsed()
     number = int(min(_DRAWS, max(50, _MOST_ANSWERS // max(counts.n, 1))))
     kept = thinned(question.draws, number)
-    ability = kept.ability[:, [fit.modes.index(mode) for mode in counts.modes]]
+    modes = question.mode_names
+    ability = kept.ability[:, [modes.index(mode) for mode in counts.modes]]
     seed = question_seed(fit.settings.seed, f"predictive {question.question.name}")
     predicted = _replicates(counts, ability, kept.parameters, np.random.default_rng(seed))
-    observed = _quantities(counts, counts.responses[None], fit.modes)
+    observed = _quantities(counts, counts.responses[None], modes)
     found = []
-    for (kind, what), values in _quantities(counts, predicted, fit.modes).items():
+    for (kind, what), values in _quantities(counts, predicted, modes).items():
         seen = float(observed[kind, what][0])
         low, high = np.quantile(values, [0.03, 0.97])
         p = float((values > seen + 1e-12).mean() + 0.5 * (abs(values - seen) <= 1e-12).mean())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import takewhile
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -81,7 +82,7 @@ class Draws:
     Attributes
     ----------
     ability : ndarray, shape (chain, draw, mode)
-        Sums to 0 over the modes of a draw [logit]; modes as in the response table.
+        Sums to 0 over the modes of a draw [logit]; modes in the order of ``QuestionFit.mode_names``.
     worth : ndarray, shape (chain, draw, mode)
         ``softmax(ability)``: sums to 1 over the modes of a draw.
     parameters : mapping of str to ndarray, shape (chain, draw)
@@ -172,7 +173,7 @@ class QuestionFit:
     modes : tuple of ModeResult
         In the order of the response table; empty if not ranked.
     pairs : tuple of PairResult
-        Every pair of modes, asked or not, in the order of the response table.
+        Every pair of the question's modes, asked or not, in the order of the response table.
     parameters : tuple of Quantity
         Empty if not ranked.
     draws : Draws or None
@@ -205,6 +206,16 @@ class QuestionFit:
     missing_pairs: tuple[tuple[str, str], ...] = ()
     hierarchical: bool = False
 
+    @property
+    def mode_names(self) -> tuple[str, ...]:
+        """The modes that the question is about, ranked or not, in the order of the response table; the last
+        axis of the draws.
+        """
+        if self.modes or not self.pairs:
+            return tuple(mode.mode for mode in self.modes)
+        first = self.pairs[0].mode_i
+        return first, *(pair.mode_j for pair in takewhile(lambda pair: pair.mode_i == first, self.pairs))
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -213,7 +224,7 @@ class Fit:
     Attributes
     ----------
     modes : tuple of str
-        The modes in the order of the response table; the last axis of every draw.
+        All modes in the order of the response table; a question may be about some of them alone.
     model : str
         The likelihood in a sentence.
     priors : mapping of str to str

@@ -66,7 +66,7 @@ def prior_shifts(
         scale = factor * SUBJECT_SD_SCALE
         for question in fitted.questions:
             if question.draws is not None and question.ranked and "subject_sd" in question.draws.parameters:
-                then = _reweighted(question.draws, fitted.modes, scale)
+                then = _reweighted(question.draws, question.mode_names, scale)
                 shifts += _shifts(question, f"subject_sd ~ HalfNormal({scale:g})", then, True)
     return tuple(shifts)
 

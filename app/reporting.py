@@ -9,6 +9,7 @@ from rich.console import Console
 
 from analysis.console_ranking import print_ranking
 from analysis.fit import fit
+from analysis.groups import largest_groups
 from analysis.lag import LagExclusion, LagLimits, lag_changes, without_laggy
 from analysis.refits import Refits, refits
 from analysis.report import MARKER, ReportResult, write_report
@@ -40,6 +41,7 @@ class Request:
     seed: int = 2017
     lag_limits: LagLimits = field(default_factory=LagLimits)
     full: bool = False
+    largest_group: bool = False
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,8 @@ def make_report(request: Request) -> ReportResult:
     """
     everything = _read(request)
     evidence = _without_laggy(everything, request.lag_limits)
+    if request.largest_group:
+        evidence = replace(evidence, table=largest_groups(evidence.table))
     settings = FitSettings(
         engine=request.engine,
         pooled=request.pooled,

@@ -46,7 +46,8 @@ def compiler_note() -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Block:
-    """Questions on one scale, which PyMC holds as one set of variables with an axis for the question.
+    """Questions on one scale and about as many modes, which PyMC holds as one set of variables with an axis
+    for the question.
 
     Attributes
     ----------
@@ -72,13 +73,15 @@ class JointModel:
 
 def joint_model(problems: Sequence[Problem]) -> JointModel:
     """The PyMC model of these problems."""
+    kinds = [(problem.model, len(problem.counts.modes)) for problem in problems]
+    is_mixed = len({n for _, n in kinds}) > 1
     blocks = tuple(
         Block(
-            f"{model.link}{model.levels}_{'' if model.hierarchical else 'pooled_'}",
+            f"{model.link}{model.levels}_{'' if model.hierarchical else 'pooled_'}{f'{n}_modes_' * is_mixed}",
             model,
-            tuple(k for k, problem in enumerate(problems) if problem.model == model),
+            tuple(k for k, kind in enumerate(kinds) if kind == (model, n)),
         )
-        for model in dict.fromkeys(problem.model for problem in problems)
+        for model, n in dict.fromkeys(kinds)
     )
     with _quiet():
         import pymc as pm

@@ -108,7 +108,9 @@ def _draw_cell(
     axes.tick_params(labelsize=7.6, pad=2)
     results = {m.mode: m for m in question.modes}
     for measured in own:
-        worth = results[measured.mode]
+        worth = results.get(measured.mode)
+        if worth is None:
+            continue
         if not np.isnan(measured.low):
             axes.vlines(worth.worth_mean, measured.low, measured.high, color=DATA, linewidth=0.9)
         axes.hlines(measured.mean, worth.worth_hdi_low, worth.worth_hdi_high, color=DATA, linewidth=0.9)

@@ -10,6 +10,7 @@ from analysis.figures.answers import MOST_PAIRS, STANDING_FOR_ALL, draw_answers
 from analysis.figures.chains import draw_chains
 from analysis.figures.grid import IN_ORDER_UP_TO
 from analysis.figures.labels import one_line
+from analysis.figures.own_modes import draw_by_modes
 from analysis.figures.pairwise import draw_pairwise
 from analysis.figures.parameters import draw_parameters
 from analysis.figures.ranks import draw_ranks
@@ -180,12 +181,14 @@ def _counted(n: int, noun: str) -> str:
 
 
 def _worth(fit: Fit, tag: str) -> Section:
-    worth = 1 / len(fit.modes)
+    sizes = {len(q.mode_names) for q in fit.questions if q.ranked} or {len(fit.modes)}
+    worth = 1 / min(sizes)
     shown = f"{worth:.2f}" if worth >= 0.095 else f"{worth:.3f}"
-    many = len(fit.modes) > IN_ORDER_UP_TO
+    equal = f"{shown} (dotted)" if len(sizes) == 1 else "1 over the number of its modes (dotted)"
+    many = max(sizes) > IN_ORDER_UP_TO
     lower = [q.question for q in fit.questions if q.question.polarity == "lower_is_better" and q.ranked]
     caption = (
-        f"Worth of each mode: they add up to 1 in each question, and {shown} (dotted) is no preference. Thin "
+        f"Worth of each mode: they add up to 1 in each question, and {equal} is no preference. Thin "
         "lines are 94 % credible intervals, thick lines 50 %. “First %” is the chance that the mode ranks "
         "first, bold from 80 on."
     )
@@ -198,7 +201,7 @@ def _worth(fit: Fit, tag: str) -> Section:
     if not any(q.ranked for q in fit.questions):
         words = "No question is ranked, so there are no worths to draw: the reasons stand above."
         return Section(heading, (), "", "", None, words=(words,))
-    drawings = draw_worth(fit.questions, fit.modes, tag)
+    drawings = draw_by_modes(fit.questions, lambda some, modes: draw_worth(some, modes, tag))
     return Section(heading, drawings, "", caption, pages.worth_table(fit), "appended")
 
 
@@ -207,23 +210,23 @@ def _pairwise(fit: Fit, tag: str) -> Section | None:
     if not ranked:
         return None
     caption = "Chance, in per cent, that the row's mode ranks above the column's; darker is more likely."
-    if len(fit.modes) <= IN_ORDER_UP_TO:
+    if max(len(q.modes) for q in ranked) <= IN_ORDER_UP_TO:
         caption += " Below it the answers behind it: for the row's mode, ties, for the column's."
     else:
         caption += " Modes are sorted by their mean rank."
-    drawings = draw_pairwise(ranked, fit.modes, tag)
+    drawings = draw_by_modes(ranked, lambda some, modes: draw_pairwise(some, modes, tag))
     return Section("Pair by pair", drawings, "", caption, pages.pairwise_table(fit))
 
 
 def _ranks(fit: Fit, tag: str) -> Section | None:
-    ranked = [q for q in fit.questions if q.ranked]
-    if len(fit.modes) < 3 or not ranked:
+    ranked = [q for q in fit.questions if q.ranked and len(q.modes) > 2]
+    if not ranked:
         # Who is first of two is who is above the other: the figure before says it.
         return None
     caption = "Chance, in per cent, that a mode (row) holds a rank (column); rank 1 is the highest worth."
-    if len(fit.modes) > IN_ORDER_UP_TO:
+    if max(len(q.modes) for q in ranked) > IN_ORDER_UP_TO:
         caption += " Modes are sorted by their mean rank."
-    drawings = draw_ranks(ranked, fit.modes, tag)
+    drawings = draw_by_modes(ranked, lambda some, modes: draw_ranks(some, modes, tag))
     return Section("Possible ranks", drawings, "", caption, pages.ranks_table(fit))
 
 

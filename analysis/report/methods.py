@@ -226,9 +226,9 @@ def _acceptance(fit: Fit) -> float:
     """Acceptance rate that NUTS adapted to; the engine fast lowers it in many dimensions."""
     if fit.settings.engine != "fast":
         return fit.settings.target_accept
-    free = len(fit.modes) - 1
     sizes = [
-        len(q.parameters) + free * (1 + (q.n_participants if q.hierarchical else 0)) for q in fit.questions
+        len(q.parameters) + (len(q.mode_names) - 1) * (1 + (q.n_participants if q.hierarchical else 0))
+        for q in fit.questions
     ]
     return fit.settings.acceptance(max(sizes, default=0))
 

@@ -264,12 +264,13 @@ def pairwise_table(fit: Fit) -> Table:
 def ranks_table(fit: Fit) -> Table:
     """Chance of every rank, for as many modes as fit a page."""
     ranked = [q for q in fit.questions if q.ranked]
-    width = min(len(fit.modes), 8)
+    width = min(max((len(q.modes) for q in ranked), default=0), 8)
     rows = tuple(
         (
             one_line(q.question.name),
             one_line(m.mode),
             *(f"{percent(p)} %" for p in m.rank_probabilities[:width]),
+            *([""] * (width - len(m.rank_probabilities))),
             f"{m.rank_mean:.2f}",
         )
         for q in ranked

@@ -6,6 +6,7 @@ from math import isnan
 from analysis.closer_look import CloserLook
 from analysis.consistency import CIRCULAR_BY_CHANCE, Consistency
 from analysis.figures.labels import isolated, one_line, percent, percent_in_words
+from analysis.figures.own_modes import draw_by_modes
 from analysis.figures.persons import MOST_INTERVALS, MOST_MODES, draw_persons
 from analysis.persons import MOST_PEOPLE, Agreement
 from analysis.report.findings import listed
@@ -42,7 +43,10 @@ def agreement_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
     columns = ("Question", "First of the group", *own, "Others", "Someone new")
     table = Table(columns, (False, False, *([True] * (len(columns) - 2))), rows, "agreement.csv")
     shown = [q for q, a in zip(fit.questions, look.agreements, strict=True) if a.people]
-    drawings = draw_persons(shown, known, fit.modes, tag)
+    of = {a.question: a for a in known}
+    drawings = draw_by_modes(
+        shown, lambda some, modes: draw_persons(some, [of[q.question.name] for q in some], modes, tag)
+    )
     words = _one_person(known) if people == 1 else _shares_of_people(known, people)
     dots = (
         "the participant's own"
@@ -64,8 +68,9 @@ def agreement_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
         + f"Dotted is no preference. Below: {below}. In the numbers, “others” are "
         + ("the next most likely firsts." if people == 1 else "the modes that most of the others have first.")
     )
-    if len(fit.modes) > MOST_MODES:
-        caption += f" Of {len(fit.modes)} modes the {MOST_MODES} with the highest worth are drawn."
+    n_modes = max(len(q.mode_names) for q in shown)
+    if n_modes > MOST_MODES:
+        caption += f" Of {n_modes} modes the {MOST_MODES} with the highest worth are drawn."
     return Section(heading, drawings, "", caption, table, words=(words,))
 
 

@@ -50,6 +50,13 @@ def report(
             "comparisons left out, worth on metrics, groups of people. Takes a minute or more.",
         ),
     ] = False,
+    largest_group: Annotated[
+        bool,
+        typer.Option(
+            "--largest-group",
+            help="Where comparisons leave modes in groups that nothing connects, rank the largest alone.",
+        ),
+    ] = False,
     include_simulated: SimulatedOption = False,
     max_latency_ms: Annotated[
         float | None,
@@ -106,5 +113,6 @@ def report(
             seed=seed,
             lag_limits=LagLimits(max_latency_ms, max_skipped),
             full=full,
+            largest_group=largest_group,
         )
     )

@@ -110,7 +110,8 @@ def test_a_name_cannot_turn_round_or_break_the_sentence_it_stands_in(table_of):
     refused = fit(of_pairs(table_of, [tuple(names[:2])], names)).questions[0]
     assert refused.reason == (
         "\u2068\u05d3\u2069 was never compared with another mode. "
-        "Missing: a b against \u2068\u05d3\u2069 or c against \u2068\u05d3\u2069."
+        "Missing: a b against \u2068\u05d3\u2069 or c against \u2068\u05d3\u2069. "
+        "“elbowroom report --largest-group” ranks the largest group alone."
     )
     rows = pd.DataFrame([("a\nb", "\u202ec", "A>B")], columns=["mode_a", "mode_b", "response"])
     warned = " ".join(fit(table_of(rows)).questions[0].warnings)
