@@ -1,15 +1,13 @@
-"""Bringing answers and stuck events that were collected elsewhere into a store.
+"""Bringing answers that were collected elsewhere into a store.
 
-Each import happens whole or not at all, and the same file again changes nothing. The files are the
-response CSV (``data.response_csv``) and the stuck CSV (``data.stuck_csv``).
+Each import happens whole or not at all, and the same file again changes nothing. The file is the response CSV
+(``data.response_csv``).
 """
 
 import json
-import math
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 from typing import get_args
@@ -19,14 +17,13 @@ from sqlalchemy import select
 
 from data.batches import Repeats, UnnamedAnswer, batch_name, earlier_batches, repetitions, unnamed_id
 from data.errors import InputError
-from data.records import Comparison, Participant, Slot, Source, StuckEvent, Trial
+from data.records import Comparison, Participant, Source
 from data.response_csv import read_response_csv
 from data.responses import ResponseTable
 from data.store import Store, StoredStudy
 from data.store.rows import every, first, insert_all
 from data.store.tables import comparisons as comparison_rows
 from data.store.tables import imports, participants, responses
-from data.stuck_csv import StuckStatement, read_stuck_csv
 from data.study import Study
 
 LARGEST_IMPORT = 200_000
@@ -79,7 +76,7 @@ def import_responses(
         note(text)
     with store.transaction():
         stored = store.add_study(study, toml_text)
-        if _was_imported(store, stored, "responses", table.sha256):
+        if was_imported(store, stored, "responses", table.sha256):
             note("This very file was imported before: nothing is added.")
             return 0
         _refuse_to_mix_pooled(store, stored, path, table.has_participants)
@@ -93,7 +90,7 @@ def import_responses(
                     given = _Answers(store, stored, path, str(label), source, table.has_participants, batch)
                     given.read(rows)
                     added += given.write()
-        _remember(store, stored, "responses", table.sha256, added)
+        remember(store, stored, "responses", table.sha256, added)
         return added
 
 
@@ -154,7 +151,7 @@ def _unnamed_answers(
     ):
         label = str(person) if table.has_participants else f"pooled-{source}"
         if label not in ids:
-            ids[label] = _participant_id(store, study, label)
+            ids[label] = participant_id(store, study, label)
         answers += [UnnamedAnswer(ids[label], question, a, b, answer, int(repetition), bool(check))] * count
     return answers
 
@@ -174,7 +171,7 @@ class _Answers:
     ) -> None:
         self.store, self.path, self.label, self.batch = store, path, label, batch
         self.at = store.clock()
-        self.who = _participant_id(store, study, label if has_participants else f"pooled-{source}")
+        self.who = participant_id(store, study, label if has_participants else f"pooled-{source}")
         self._join(study, source, pooled=not has_participants)
         self.known = {comparison.id: comparison for comparison in store.comparisons(participant=self.who)}
         self.new: list[Comparison] = []
@@ -200,9 +197,9 @@ class _Answers:
             where = f"{self.path}: participant {self.label!r}, comparison {name!r}, {question}"
             for _ in range(count):
                 shown = (a, b, str(repetition), str(check))
-                comparison_id = _comparison_id(self.who, name) if name else self._unnamed(shown, question)
-                self._show(comparison_id, int(repetition), a, b, bool(check), where)
-                self.answers[comparison_id, question] = answer
+                key = comparison_id(self.who, name) if name else self._unnamed(shown, question)
+                self._show(key, int(repetition), a, b, bool(check), where)
+                self.answers[key, question] = answer
 
     def _unnamed(self, shown: tuple[str, ...], question: str) -> str:
         """The id of a comparison that the file gives no name: what was shown, and how often before."""
@@ -247,126 +244,7 @@ class _Answers:
         return len(new)
 
 
-def import_stuck(
-    path: Path,
-    study: Study,
-    toml_text: str,
-    store: Store,
-    *,
-    note: Callable[[str], None] = lambda text: None,
-) -> int:
-    """Add stuck events that were found elsewhere to comparisons in a store.
-
-    The columns are described in ``data.stuck_csv``. Every comparison that the file speaks of becomes
-    two trials, one a mode, of unknown duration and with the source ``external``. Events that an earlier file
-    brought are not added again.
-
-    Parameters
-    ----------
-    note : callable, optional
-        Called with each sentence on how the file was read.
-
-    Returns
-    -------
-    int
-        Events that were added: 0 for a file that was imported before.
-
-    Raises
-    ------
-    InputError
-        If the file is wrong, or names comparisons that the store does not have.
-    """
-    found = read_stuck_csv(path, study)
-    for text in found.notes:
-        note(text)
-    with store.transaction():
-        stored = store.add_study(study, toml_text)
-        if _was_imported(store, stored, "stuck", found.file.sha256):
-            return 0
-        comparisons = {comparison.id: comparison for comparison in store.comparisons(stored)}
-        events: dict[str, _Events] = {}
-        if found.is_complete:
-            events = {c.id: _Events() for c in comparisons.values() if not c.check}
-        for said in found.statements():
-            comparison = _comparison_of(store, stored, said, comparisons)
-            if comparison is None:
-                name = repr(said.comparison[:60])
-                raise found.file.error(
-                    said.row, "comparison", f"{name} is not in the store: import its responses first"
-                )
-            if said.mode not in (comparison.mode_a, comparison.mode_b):
-                valid = f"{comparison.mode_a}, {comparison.mode_b}"
-                raise found.file.error(said.row, "mode", f"{said.mode!r} was not shown; valid: {valid}")
-            here = events.setdefault(comparison.id, _Events())
-            if said.event is not None:
-                (here.under_a if said.mode == comparison.mode_a else here.under_b).append(said.event)
-        added = sum(_add_external_trials(store, comparisons[key], here) for key, here in events.items())
-        named = sum(len(here.under_a) + len(here.under_b) for here in events.values())
-        if named > added:
-            note(f"{named - added} of {named} events are in the store already, and are not added again.")
-        _remember(store, stored, "stuck", found.file.sha256, added)
-        return added
-
-
-@dataclass(frozen=True)
-class _Events:
-    """What happened in one comparison."""
-
-    under_a: list[StuckEvent] = field(default_factory=list)
-    under_b: list[StuckEvent] = field(default_factory=list)
-
-
-def _comparison_of(
-    store: Store, study: StoredStudy, said: StuckStatement, comparisons: Mapping[str, Comparison]
-) -> Comparison | None:
-    if not said.participant and said.comparison in comparisons:
-        return comparisons[said.comparison]
-    who = _participant_id(store, study, said.participant or "pooled-human")
-    return comparisons.get(_comparison_id(who, said.comparison))
-
-
-def _add_external_trials(store: Store, comparison: Comparison, events: _Events) -> int:
-    """One trial a mode, unless the store has trials already and nothing is new; gives the events added."""
-    earlier = store.trials(comparison=comparison.id)
-    slots: tuple[Slot, ...] = get_args(Slot)
-    added = 0
-    for slot in slots:
-        own = [trial for trial in earlier if trial.slot == slot]
-        before = Counter(_what(e) for trial in own if trial.source == "external" for e in trial.events)
-        new = []
-        for event in events.under_a if slot == "A" else events.under_b:
-            if before[_what(event)]:
-                before[_what(event)] -= 1
-            else:
-                new.append(event)
-        if own and not new:
-            continue
-        added += len(new)
-        number = max((trial.number for trial in own), default=0) + 1
-        store.add_trial(
-            Trial(
-                id=f"{comparison.id}.{slot}{number}",
-                comparison=comparison.id,
-                slot=slot,
-                number=number,
-                mode=comparison.mode_of(slot),
-                source="external",
-                outcome="stuck" if any(event.kind == "stuck" for event in new) else "completed",
-                started_at=comparison.started_at or store.clock(),
-                duration_s=math.nan,
-                seed=0,
-                events=tuple(new),
-            )
-        )
-    return added
-
-
-def _what(event: StuckEvent) -> tuple[str, str, float | None]:
-    """What tells an event from another under the same mode in the same comparison."""
-    return event.kind, event.definition, None if math.isnan(event.time_s) else event.time_s
-
-
-def _participant_id(store: Store, study: StoredStudy, label: str) -> str:
+def participant_id(store: Store, study: StoredStudy, label: str) -> str:
     """The id that a participant's name in a file gets: the name itself where it can be one."""
     safe = label if _SAFE.fullmatch(label) else f"p{sha256(label.encode()).hexdigest()[:12]}"
     with store.reading() as connection:
@@ -376,7 +254,7 @@ def _participant_id(store: Store, study: StoredStudy, label: str) -> str:
     return f"{safe}-{study.sha256[:8]}"
 
 
-def _comparison_id(participant: str, name: str) -> str:
+def comparison_id(participant: str, name: str) -> str:
     """The id that a comparison's name in a file gets; names count within a participant."""
     if name.startswith(f"{participant}.") and _OWN_ID.fullmatch(name):
         return name
@@ -384,13 +262,13 @@ def _comparison_id(participant: str, name: str) -> str:
     return f"{participant}.{safe}"
 
 
-def _was_imported(store: Store, study: StoredStudy, kind: str, digest: str) -> bool:
+def was_imported(store: Store, study: StoredStudy, kind: str, digest: str) -> bool:
     here = (imports.c.study == study.id) & (imports.c.kind == kind) & (imports.c.sha256 == digest)
     with store.reading() as connection:
         return bool(every(connection, select(imports.c.rows).where(here)))
 
 
-def _remember(store: Store, study: StoredStudy, kind: str, digest: str, added: int) -> None:
+def remember(store: Store, study: StoredStudy, kind: str, digest: str, added: int) -> None:
     row = {"study": study.id, "kind": kind, "sha256": digest, "at": store.clock(), "rows": added}
     with store.transaction() as connection:
         connection.execute(imports.insert(), row)

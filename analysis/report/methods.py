@@ -212,6 +212,8 @@ def _reported(fit: Fit, study: Study | None) -> str:
     paper = study is not None and study.name.startswith("carmichael2017")
     like = ", as in Figure 5 of Carmichael et al. (2017)" if paper else ""
     several = " Questions are not corrected for being several." if len(fit.questions) > 1 else ""
+    if any(q.mode_names != fit.modes for q in fit.questions):
+        several += " Each question ranks the modes that its own comparisons connect, and no others."
     return (
         f"Worths lie between 0 and 1 and add up to 1{like}; on a scale of two levels, and for someone who is "
         "like the group, the odds that one mode is chosen over another are the ratio of their worths. "

@@ -72,9 +72,10 @@ def import_(
     elbowroom import --responses answers.csv --continues --study my_study.toml --store study.sqlite
     """
     from app.studies import open_study
-    from data.importing import import_responses, import_stuck
+    from data.importing import import_responses
     from data.locations import default_store
     from data.store import Store
+    from data.stuck_importing import import_stuck
 
     if (responses is None) == (stuck is None):
         raise InputError("give one of --responses FILE.csv and --stuck FILE.csv")

@@ -6,8 +6,9 @@ import pytest
 
 from data.errors import InputError
 from data.export import export_study
-from data.importing import import_responses, import_stuck
+from data.importing import import_responses
 from data.store import Store
+from data.stuck_importing import import_stuck
 from data.study_file import study_text
 
 TEXT = study_text("carmichael2017")
@@ -185,9 +186,44 @@ def test_a_list_of_events_says_that_nothing_else_happened(collected, study, tmp_
     assert [t.events[0].time_s for t in collected.trials() if t.outcome == "stuck"] == [12.5]
 
 
+def events(store: Store) -> int:
+    return sum(len(trial.events) for trial in store.trials())
+
+
+def test_a_repeated_statement_is_one_event_and_is_said(collected, study, tmp_path):
+    text = "participant,comparison,mode,stuck\nAnna,1,M1,true\nAnna,1,M2,false\nAnna,1,M1,TRUE\n"
+    notes: list[str] = []
+    path = write(tmp_path, text, "stuck.csv")
+    assert import_stuck(path, study, TEXT, collected, note=notes.append) == 1
+    assert events(collected) == 1
+    assert notes == ["1 row repeats an earlier one and is counted once."]
+
+
+def test_two_events_of_a_kind_at_one_time_are_one_and_without_times_two(collected, study, tmp_path):
+    header = "participant,comparison,mode,kind,time_s\n"
+    timed = write(tmp_path, header + "Anna,1,M1,stuck,4.5\n" * 2, "a.csv")
+    assert import_stuck(timed, study, TEXT, collected) == 1
+    untimed = write(tmp_path, header + "Bea,1,M1,stuck,\n" * 2, "b.csv")
+    assert import_stuck(untimed, study, TEXT, collected) == 2
+
+
+def test_a_list_of_events_that_has_grown_adds_the_new_ones_alone(collected, study, tmp_path):
+    header, first = "participant,comparison,mode,stuck\n", "Anna,1,M1,true\n"
+    assert import_stuck(write(tmp_path, header + first, "a.csv"), study, TEXT, collected) == 1
+    notes: list[str] = []
+    longer = write(tmp_path, f"{header}{first}Anna,2,M3,true\n", "b.csv")
+    assert import_stuck(longer, study, TEXT, collected, note=notes.append) == 1
+    assert events(collected) == 2
+    assert notes == ["1 of 2 events are in the store already, and are not added again."]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        (
+            "participant,comparison,mode,stuck\nAnna,1,M1,true\nAnna,1,M1,false\n",
+            "line 3, stuck: says the contrary of line 2",
+        ),
         ("participant,comparison,mode\nAnna,1,M1\n", "line 1: a column stuck or kind is needed"),
         ("participant,mode,stuck\nAnna,M1,true\n", "line 1: the column comparison is missing"),
         (
