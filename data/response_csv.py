@@ -15,7 +15,7 @@ import pandas as pd
 from data.answers import ANSWERS, inferred_levels
 from data.csv_file import Column, CsvFile, read_csv_file
 from data.errors import InputError
-from data.labels import folded, listed_names, quoted
+from data.labels import folded, listed_names, quoted, without_the_invisible
 from data.records import Source
 from data.response_keys import check_keys
 from data.response_names import check_names
@@ -106,6 +106,9 @@ def _check_cells(file: CsvFile, study: Study | None, questions: dict[str, Questi
         "participant": lambda text: _is_one_of(text, None),
         "question": lambda text: _is_one_of(text, asked),
         "count": _count_problem,
+        "comparison": lambda text: (
+            f"{quoted(text)} has nothing to see in it" if text and not without_the_invisible(text) else None
+        ),
         "repetition": _repetition_problem,
         "source": lambda text: _is_one_of(text, get_args(Source)) if text else None,
         "check": lambda text: (
@@ -124,7 +127,7 @@ def _check_cells(file: CsvFile, study: Study | None, questions: dict[str, Questi
 
 def _is_one_of(text: str, valid: tuple[str, ...] | None) -> str | None:
     listed = f"; valid: {', '.join(valid)}" if valid else ""
-    if not text.strip():
+    if not without_the_invisible(text):
         return f"empty, but a value is needed{listed}"
     if not valid or text in valid:
         return None

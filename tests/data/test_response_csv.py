@@ -87,6 +87,8 @@ def outcome(path: Path) -> tuple[int, str]:
         (f"{HEADER}\nM1,M2,A>B\n".encode("utf-16"), "line 1: not UTF-8 text"),
         (f"{HEADER},participant\nM1,M2,A>B,\n", "line 2, participant: empty"),
         (f"{HEADER},question\nM1,M2,A>B,\n", "line 2, question: empty"),
+        (f"{HEADER},participant\nM1,M2,A>B,\u200b\n", "line 2, participant: empty"),
+        (f"{HEADER},comparison\nM1,M2,A>B,\u00a0\n", r"line 2, comparison: '\xa0' has nothing to see in it"),
         (f"{HEADER},source\nM1,M2,A>B,robot\n", "line 2, source: 'robot' is not one of: human, simulated"),
         (f"{HEADER},check\nM1,M2,A>B,perhaps\n", "line 2, check: 'perhaps' is not one of: true, false"),
         (f"{HEADER},repetition\nM1,M2,A>B,-1\n", "line 2, repetition: '-1'"),
