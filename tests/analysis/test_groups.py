@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from analysis.consistency import consistencies
 from analysis.counts import count_responses
 from analysis.fit import fit
 from analysis.groups import largest_groups
@@ -181,3 +182,27 @@ def test_the_group_kept_is_connected_and_no_other_has_more_modes(table_of, pairs
     assert len(kept) == sizes.max()
     counts = count_responses(cut, cut.questions[0])
     assert counts.n == sum(a in kept for a, _ in pairs)
+
+
+def test_more_modes_are_larger_than_more_answers_and_answers_decide_between_equal_ones(table_of):
+    def kept(counts: dict[str, int]) -> tuple[str, ...]:
+        rows = [(*pair, "A>B", n) for pair, n in counts.items()]
+        cut = largest_groups(
+            table_of(pd.DataFrame(rows, columns=["mode_a", "mode_b", "response", "count"]), levels=3)
+        )
+        return cut.modes_of(cut.questions[0])
+
+    assert kept({"ab": 90, "cd": 1, "de": 1}) == ("c", "d", "e")
+    assert kept({"ab": 3, "cd": 4}) == ("c", "d")
+    assert kept({"cd": 4, "ab": 4}) == ("c", "d")
+
+
+def test_people_are_as_consistent_as_if_the_question_were_alone(mixed, tmp_path):
+    together = consistencies(read_response_csv(mixed))
+    for name in ("speech", "noise"):
+        rows = [row for row in mixed.read_text().splitlines() if f",{name}," in row]
+        alone = consistencies(read_response_csv(write(tmp_path, rows)))
+        own = [c for c in together if c.question == name]
+        assert [(c.triads, c.circular, repr(c.zeta), repr(c.u)) for c in own] == [
+            (c.triads, c.circular, repr(c.zeta), repr(c.u)) for c in alone
+        ]
