@@ -14,6 +14,7 @@ from analysis.counts import count_responses
 from analysis.fit import fit
 from analysis.groups import largest_groups
 from analysis.leaving_out import left_out
+from analysis.model import Problem, model_of
 from analysis.report import write_report
 from analysis.results import FitSettings
 from data.response_csv import read_response_csv
@@ -206,3 +207,17 @@ def test_people_are_as_consistent_as_if_the_question_were_alone(mixed, tmp_path)
         assert [(c.triads, c.circular, repr(c.zeta), repr(c.u)) for c in own] == [
             (c.triads, c.circular, repr(c.zeta), repr(c.u)) for c in alone
         ]
+
+
+def test_the_joint_model_of_pymc_keeps_questions_with_as_many_modes_together(tmp_path):
+    pymc_engine = pytest.importorskip("analysis.engines.pymc_engine")
+    rows = [*answers("speech", SPEECH), *answers("music", MUSIC), *answers("tone", ("t1", "t2", "t3"))]
+    table = read_response_csv(write(tmp_path, rows))
+    model = model_of(QUICK, 3, has_participants=True)
+    joint = pymc_engine.joint_model([Problem(count_responses(table, q), model) for q in table.questions])
+    assert [block.members for block in joint.blocks] == [(0, 2), (1,)]
+    shapes = {variable.name: variable.type.shape for variable in joint.model.free_RVs}
+    assert {name: shape for name, shape in shapes.items() if name.endswith("ability")} == {
+        "cumulative3_3_modes_ability": (2, 3),
+        "cumulative3_2_modes_ability": (1, 2),
+    }
