@@ -7,7 +7,7 @@ from analysis.association import Association, ModeMeasure, associations, mode_me
 from analysis.consistency import Consistency, consistencies
 from analysis.equivalence import Equivalence, equivalences
 from analysis.persons import Agreement, agreements
-from analysis.predictive import PredictiveCheck, predictive_checks
+from analysis.predictive import PredictiveChecks, predictive_checks
 from analysis.results import Fit
 from analysis.strength import Strength, strengths
 from data.responses import MetricTable, ResponseTable
@@ -30,7 +30,7 @@ class CloserLook:
     equivalences: tuple[Equivalence, ...]
     agreements: tuple[Agreement, ...]
     consistencies: tuple[Consistency, ...]
-    checks: tuple[PredictiveCheck, ...]
+    checks: PredictiveChecks
     measures: tuple[ModeMeasure, ...] = ()
     associations: tuple[Association, ...] = ()
 

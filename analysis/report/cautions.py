@@ -10,7 +10,9 @@ from analysis.diagnostics import shown_ess, shown_rhat
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.lag import LagExclusion, ModeDelay
 from analysis.model import SUBJECT_SD_SCALE
+from analysis.predictive import PredictiveChecks
 from analysis.report.findings import Finding, listed
+from analysis.report.model_cautions import model_cautions
 from analysis.results import Fit, QuestionFit
 from data.responses import ResponseTable
 from data.study import Study
@@ -48,6 +50,7 @@ def cautions(
     study: Study | None,
     checks: int,
     quality: DataQuality | None = None,
+    model_checks: PredictiveChecks | None = None,
 ) -> tuple[str, ...]:
     """Plain sentences, the gravest first."""
     quality = quality or DataQuality()
@@ -59,6 +62,7 @@ def cautions(
         *_about_the_questions(fit),
         *fit.warnings,
         *_about_people(found),
+        *model_cautions(model_checks or PredictiveChecks()),
         *_about_priors(fit),
         *_about_sides(fit),
         *_about_what_is_left_out(quality.excluded),

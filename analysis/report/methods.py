@@ -282,11 +282,13 @@ def _closer(look: CloserLook | None) -> str:
             f"Participants' own abilities were drawn given draws of the group's parameters: one of {POINTS} "
             "points spread about a participant's own posterior, by their importance weights."
         )
-    if look.checks:
+    if look.checks.checks:
         said.append(
-            "Posterior predictive checks (Gelman et al. 1996) drew new participants with the same schedule "
-            "(Bayarri & Castellanos 2007); their Bayesian p-values count half of the predictions that equal "
-            "what was observed."
+            "Predictive checks (Gelman et al. 1996) compared the answers with those of new participants who "
+            "have the same schedule (Bayarri & Castellanos 2007), drawn at one posterior draw of the "
+            "parameters (Johnson 2007). Every quantity was cleared of the scores of the model's own "
+            "parameters (Robins et al. 2000): shares of answers, and the scores along what the model leaves "
+            "out (Rao 1948). The p of the most extreme of all checks is that of Westfall & Young (1993)."
         )
     if any(c.participant == "all" for c in look.consistencies):
         said.append(

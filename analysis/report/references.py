@@ -96,6 +96,12 @@ SOURCES = (
         "Hamiltonian Monte Carlo. Journal of Machine Learning Research 15(47), 1593–1623.",
     ),
     Reference(
+        "Johnson",
+        2007,
+        "Johnson, V. E. (2007). Bayesian model assessment using pivotal quantities. Bayesian Analysis 2(4), "
+        "719–733.",
+    ),
+    Reference(
         "Kendall & Babington Smith",
         1940,
         "Kendall, M. G. and Babington Smith, B. (1940). On the method of paired comparisons. Biometrika "
@@ -127,10 +133,23 @@ SOURCES = (
         "parametrization of hierarchical models. Statistical Science 22(1), 59–73.",
     ),
     Reference(
+        "Rao",
+        1948,
+        "Rao, C. R. (1948). Large sample tests of statistical hypotheses concerning several parameters with "
+        "applications to problems of estimation. Proceedings of the Cambridge Philosophical Society 44(1), "
+        "50–57.",
+    ),
+    Reference(
         "Rao & Kupper",
         1967,
         "Rao, P. V. and Kupper, L. L. (1967). Ties in paired-comparison experiments: a generalization of the "
         "Bradley-Terry model. Journal of the American Statistical Association 62(317), 194–204.",
+    ),
+    Reference(
+        "Robins et al.",
+        2000,
+        "Robins, J. M., van der Vaart, A. and Ventura, V. (2000). Asymptotic distribution of p values in "
+        "composite null models. Journal of the American Statistical Association 95(452), 1143–1156.",
     ),
     Reference(
         "Rubin", 1981, "Rubin, D. B. (1981). The Bayesian bootstrap. The Annals of Statistics 9(1), 130–134."
@@ -159,6 +178,12 @@ SOURCES = (
         2024,
         "Vehtari, A., Simpson, D., Gelman, A., Yao, Y. and Gabry, J. (2024). Pareto smoothed importance "
         "sampling. Journal of Machine Learning Research 25(72), 1–58.",
+    ),
+    Reference(
+        "Westfall & Young",
+        1993,
+        "Westfall, P. H. and Young, S. S. (1993). Resampling-based multiple testing: examples and methods "
+        "for p-value adjustment. Wiley, New York.",
     ),
 )
 """In the order of a list of references."""

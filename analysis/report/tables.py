@@ -139,7 +139,7 @@ def write_closer_look(look: CloserLook, contrasts: Sequence[StuckContrast], fold
         ("equivalence", look.equivalences),
         ("strength", look.strengths),
         ("consistency", look.consistencies),
-        ("predictive", look.checks),
+        ("predictive", look.checks.checks),
         ("measures", look.measures),
         ("association", look.associations),
         ("stuck_contrasts", contrasts),

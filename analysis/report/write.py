@@ -120,7 +120,7 @@ def write_report(
     quality = data_quality(table, fit.modes, lag, excluded)
     look = closer_look(table, fit, metrics)
     contrasts = stuck_contrasts(stuck, rates) if stuck is not None and rates else ()
-    said = cautions(table, fit, findings(fit), study, checks, quality)
+    said = cautions(table, fit, findings(fit), study, checks, quality, look.checks)
     summary = summarise(table, fit, study, said, checks, excluded)
     with writing_folder(out, marker=MARKER, owns=OWNS) as folder:
         tell(0, STEPS, "tables")

@@ -40,10 +40,10 @@ def test_each_person_has_the_own_first_that_the_answers_show(divided, divided_fi
 
 def test_a_pooled_model_does_not_predict_how_far_people_lie_apart(divided, divided_fit):
     pooled = fit(divided, replace(QUICK, pooled=True))
-    spread = {c.kind: c for c in predictive_checks(divided, pooled)}["spread"]
+    spread = {c.kind: c for c in predictive_checks(divided, pooled).checks}["spread"]
     assert spread.is_unlikely
     assert spread.observed > spread.predicted_high
-    assert not {c.kind: c for c in predictive_checks(divided, divided_fit)}["wins"].is_unlikely
+    assert not {c.kind: c for c in predictive_checks(divided, divided_fit).checks}["wins"].is_unlikely
 
 
 def test_equal_draws_are_equal_in_practice_and_far_ones_different(divided_fit):

@@ -1,0 +1,88 @@
+"""Answers of new people with the schedule of the old ones, at one draw of a fitted model's parameters."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.answer_rows import AnswerRows
+from analysis.answer_shares import answer_probabilities
+from analysis.zero_sum import zero_sum_basis
+
+FloatArray = NDArray[np.float64]
+Answers = NDArray[np.int64]
+
+PERSON_SPREADS = ("subject_sd", "side_sd", "scale_sd")
+"""Parameters that say how much people differ: in their abilities, side effects and widths of the scale."""
+_LEAST_CHANCE = 1e-12
+_MOST_AT_ONCE = 4_000_000
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """One draw: ``ability`` of shape (mode,), and the other parameters by name."""
+
+    ability: FloatArray
+    values: Mapping[str, float]
+
+    def lead(self, mode_a: Answers, mode_b: Answers) -> FloatArray:
+        """Lead of A over B of someone like the group [logit]."""
+        lead = self.ability[mode_a] - self.ability[mode_b] + self.values.get("side_effect", 0.0)
+        return np.asarray(lead)
+
+
+def replicated(rows: AnswerRows, at: Parameters, number: int, rng: np.random.Generator) -> Answers:
+    """So many sets of answers of new people with the same schedule: (set, answer), places on the scale."""
+    sets = max(1, _MOST_AT_ONCE // max(1, rows.n * rows.levels, len(rows.people) * len(at.ability)))
+    return np.concatenate(
+        [_drawn(rows, at, min(sets, number - done), rng) for done in range(0, number, sets)]
+    )
+
+
+def _drawn(rows: AnswerRows, at: Parameters, number: int, rng: np.random.Generator) -> Answers:
+    people = people_of(at, (number, len(rows.people)), rng.standard_normal)
+    eta = at.lead(rows.mode_a, rows.mode_b) + people.side[:, rows.person]
+    eta = eta + people.ability[:, rows.person, rows.mode_a] - people.ability[:, rows.person, rows.mode_b]
+    chances = chances_of(eta, at.values, rows.levels, people.width[:, rows.person])
+    edges = np.cumsum(chances[..., :-1], axis=-1)
+    return np.asarray((rng.random((*eta.shape, 1)) > edges).sum(axis=-1), dtype=np.int64)
+
+
+@dataclass(frozen=True)
+class People:
+    """Deviations of some people from the group: ``ability`` (..., mode), and each of shape (...)
+    ``side`` and ``width``, the log of what a person's cut-points are multiplied by."""
+
+    ability: FloatArray
+    side: FloatArray
+    width: FloatArray
+
+
+def people_of(
+    at: Parameters, shape: tuple[int, ...], normal: Callable[[tuple[int, ...]], FloatArray]
+) -> People:
+    """People as the model has them, from standard normal numbers; zero where it knows no difference."""
+    n_modes = len(at.ability)
+    spread = [at.values.get(name, 0.0) for name in PERSON_SPREADS]
+    none = np.zeros(shape)
+    ability = np.zeros((*shape, n_modes))
+    if spread[0]:
+        ability = spread[0] * normal((*shape, n_modes - 1)) @ zero_sum_basis(n_modes).T
+    side, width = (s * normal(shape) if s else none for s in spread[1:])
+    return People(ability, side, width)
+
+
+def chances_of(
+    eta: FloatArray, values: Mapping[str, float], levels: int, width: FloatArray | float = 0.0
+) -> FloatArray:
+    """Chance of each answer, (..., level); ``width`` broadcasts against ``eta``."""
+    ones = np.ones((1,) * eta.ndim)
+    parameters = {}
+    for name, value in values.items():
+        if name.startswith("cut_"):
+            parameters[name] = np.broadcast_to(value * np.exp(width), eta.shape)
+        else:
+            parameters[name] = (value + width) * ones if name == "log_nu" else value * ones
+    chances = np.maximum(answer_probabilities(eta, parameters, levels), _LEAST_CHANCE)
+    return np.asarray(chances / chances.sum(axis=-1, keepdims=True))
