@@ -23,7 +23,7 @@ class AnswerRows:
     people : tuple of str
         Names; one empty name where the answers name nobody.
     person, mode_a, mode_b : ndarray of int64, shape (answer,)
-        Places in ``people`` and in the order of the response table's modes.
+        Places in ``people`` and among the modes.
     level : ndarray of int64, shape (answer,)
         From A much (0) to B much.
     before : ndarray of int64, shape (answer,)
@@ -77,17 +77,17 @@ class AnswerRows:
         return replace(self, **kept, before=np.full(len(kept["level"]), -1), has_order=False)
 
 
-def answer_rows(table: ResponseTable, question: QuestionScale) -> AnswerRows:
-    """All answers to a question but those to attention checks."""
+def answer_rows(table: ResponseTable, question: QuestionScale, modes: tuple[str, ...]) -> AnswerRows:
+    """All answers to a question but those to attention checks; ``modes`` gives the modes their places."""
     rows = table.rows[(table.rows["question"] == question.name) & ~table.rows["check"].astype(bool)]
     has_order = table.has_participants and bool((rows["count"] <= 1).all())
     rows = rows.loc[rows.index.repeat(rows["count"].to_numpy())]
     names = rows["participant"].astype(str) if table.has_participants else pd.Series("", index=rows.index)
     people, person = np.unique(names.to_numpy(dtype=str), return_inverse=True)
     order = np.argsort(person, kind="stable")
-    modes, scale = pd.Index(table.modes), pd.Index(SCALES[question.levels])
+    scale, places = pd.Index(SCALES[question.levels]), pd.Index(modes)
     frame = rows.iloc[order]
-    mode_a, mode_b = (modes.get_indexer(pd.Index(frame[side])) for side in ("mode_a", "mode_b"))
+    mode_a, mode_b = (places.get_indexer(pd.Index(frame[side])) for side in ("mode_a", "mode_b"))
     person = person[order].astype(np.int64)
     repetition = frame["repetition"].to_numpy(dtype=np.int64)
     return AnswerRows(

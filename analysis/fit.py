@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.counts import Counts, count_responses
 from analysis.gate import Gate, reported_convergence
-from analysis.identifiability import Examination, examine
+from analysis.identifiability import Examination, examine, has_exchanged_sides
 from analysis.model import Problem, describe, model_of, priors
 from analysis.results import Draws, Engine, Fit, FitSettings, Link, QuestionFit
 from analysis.summaries import (
@@ -87,12 +87,13 @@ def fit(table: ResponseTable, settings: FitSettings | None = None, progress: Pro
         for k, p in enumerate(prepared)
     )
     is_hierarchical = table.has_participants and not settings.pooled and settings.engine != "gibbs"
+    stated = replace(settings, side_effect=any(p.problem.model.side_effect for p in prepared))
     return Fit(
         questions=fits,
         settings=settings,
         modes=table.modes,
-        model=describe(settings, is_hierarchical),
-        priors=priors(settings, {q.levels for q in table.questions}, is_hierarchical),
+        model=describe(stated, is_hierarchical),
+        priors=priors(stated, {q.levels for q in table.questions}, is_hierarchical),
         rhat_max=max((q.rhat_max for q in fits if q.draws is not None), default=math.nan),
         ess_min=min((q.ess_min for q in fits if q.draws is not None), default=math.nan),
         divergences=_divergences(fits, settings),
@@ -151,6 +152,7 @@ def _prepare(table: ResponseTable, question: QuestionScale, settings: FitSetting
         if not is_proper(used):
             examination = replace(examination, refusal=IMPROPER)
     model = model_of(settings, used.levels, table.has_participants)
+    model = replace(model, side_effect=model.side_effect and examination.has_side_effect)
     if is_gibbs:
         model = replace(model, hierarchical=False, side_effect=False)
     if not model.hierarchical:
@@ -218,6 +220,7 @@ def _question_fit(prepared: _Prepared, modes: tuple[str, ...], found: _Sampled |
         n_participants=len(known),
         missing_pairs=examination.missing_pairs,
         hierarchical=prepared.problem.model.hierarchical,
+        is_side_told_apart=has_exchanged_sides(counts),
     )
     if found is None:
         return unranked

@@ -13,6 +13,8 @@ from analysis.groups import Group, groups_of, listed
 
 FEW_COMPARISONS = 10
 """Fewer comparisons of a mode than this bring a warning. Untuned: a day's pilot, not a study."""
+ONE_SIDE_BY_CHANCE = 0.001
+"""All answers for one side count as chance if coins would do that at least so often: up to ten answers."""
 
 Pair = tuple[str, str]
 
@@ -29,11 +31,14 @@ class Examination:
         Pairs that were never compared and would connect two groups.
     warnings : tuple of str
         What the reader of the ranking must know, a sentence each.
+    has_side_effect : bool
+        False if the model is to have no side effect, or if the answers make none of it known.
     """
 
     refusal: str
     missing_pairs: tuple[Pair, ...]
     warnings: tuple[str, ...]
+    has_side_effect: bool = True
 
 
 def examine(
@@ -71,9 +76,11 @@ def examine(
             f"Few data: {_named(few)} {_are(few)} in fewer than {FEW_COMPARISONS} comparisons; the ranking "
             "rests on the prior as much as on the answers."
         )
+    if side_effect and sides_are_alike(counts.responses.sum(axis=0)):
+        return Examination("", (), (*warnings, _one_side(counts)), False)
     if side_effect:
         warnings += _sides(counts)
-    return Examination("", (), tuple(warnings))
+    return Examination("", (), tuple(warnings), side_effect)
 
 
 def _between(groups: tuple[Group, ...], modes: tuple[str, ...]) -> tuple[Pair, ...]:
@@ -120,11 +127,50 @@ def _separation(modes: tuple[str, ...], wins: NDArray[np.int64], ties: NDArray[n
     return said
 
 
+def sides_are_alike(answers: NDArray[np.int64]) -> bool:
+    """Whether every answer that is not a tie is for the same side, more of them than chance explains.
+
+    Then a side effect as large as one likes explains them all, whatever the modes are like, and a file that
+    names the winner first looks just like that.
+
+    Parameters
+    ----------
+    answers : ndarray of int64, shape (level,)
+        How often each was given, from A much to B much.
+    """
+    half = len(answers) // 2
+    decided = sorted((int(answers[:half].sum()), int(answers[-half:].sum())))
+    return decided[0] == 0 and 0.5 ** (decided[1] - 1) < ONE_SIDE_BY_CHANCE
+
+
+def _one_side(counts: Counts) -> str:
+    answers = counts.responses.sum(axis=0)
+    half = counts.levels // 2
+    side = "A" if answers[:half].sum() else "B"
+    n = int(answers[:half].sum() + answers[-half:].sum())
+    return (
+        f"All {n:,} answers that prefer a mode prefer what stands as {side}, so the sides say nothing here "
+        "and the side effect is left out. If the data name the "
+        f"{'winner' if side == 'A' else 'loser'} first, that is right; if people saw these sides, they chose "
+        f"{side} whatever it was, and this ranking shows only how often each mode stood there."
+    )
+
+
+def has_exchanged_sides(counts: Counts) -> bool:
+    """Whether any pair was shown in both orders."""
+    seen = _ordered_pairs(counts)
+    return any((b, a) in seen for a, b in seen)
+
+
+def _ordered_pairs(counts: Counts) -> set[tuple[int, int]]:
+    return {(int(a), int(b)) for a, b in zip(counts.mode_a, counts.mode_b, strict=True)}
+
+
 def _sides(counts: Counts) -> list[str]:
     """Warn where the side effect cannot be told from the modes."""
-    seen = {(int(a), int(b)) for a, b in zip(counts.mode_a, counts.mode_b, strict=True)}
-    if any((b, a) in seen for a, b in seen):
+    if has_exchanged_sides(counts):
         return []
+    seen = _ordered_pairs(counts)
     design = np.zeros((len(seen), len(counts.modes) + 1))
     for row, (a, b) in enumerate(sorted(seen)):
         design[row, [a, b, -1]] = 1.0, -1.0, 1.0

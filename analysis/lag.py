@@ -69,7 +69,7 @@ class LagLimits:
 
 @dataclass(frozen=True)
 class LagChange:
-    """One mode on one question, with the laggy comparisons and without; NaN where there is no ranking."""
+    """One mode on one question, with some answers and without; NaN where there is no ranking."""
 
     question: str
     mode: str
@@ -174,7 +174,7 @@ def _is_measured(rows: pd.DataFrame, limits: LagLimits) -> "pd.Series[bool]":
 
 
 def lag_changes(everything: Fit, prompt: Fit) -> tuple[LagChange, ...]:
-    """Worth and chance to rank first, in a fit of all comparisons and in one without the laggy ones."""
+    """Worth and chance to rank first, in a fit of all answers and in one without some of them."""
     changes = []
     for with_them, without in zip(everything.questions, prompt.questions, strict=True):
         before = {m.mode: m for m in with_them.modes}

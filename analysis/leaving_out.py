@@ -27,7 +27,7 @@ from analysis.answer_shares import ThinnedDraws, thinned
 from analysis.counts import count_responses
 from analysis.fit import fit
 from analysis.marginal import log_likelihoods, of_people
-from analysis.model import model_of
+from analysis.model import model_behind
 from analysis.pareto import smoothed
 from analysis.results import Draws, Fit, FitSettings, Link, QuestionFit
 from data.responses import ResponseTable
@@ -122,7 +122,11 @@ def _question_scores(
 ) -> list[ModelScore]:
     alone = replace(table, questions=(question.question,))
     points: dict[str, _Points] = {}
-    for name, settings in _variants(base, question.question.levels).items():
+    variants = _variants(base, question.question.levels)
+    if base.side_effect and question.draws is not None and "side_effect" not in question.draws.parameters:
+        # The answers make it unknown, so that the report's own model is without it.
+        del variants["without a side effect"]
+    for name, settings in variants.items():
         found = question
         if points or fitted.settings.engine == "gibbs":
             (found,) = fit(alone, settings).questions
@@ -196,7 +200,7 @@ def _log_likelihoods(
         counts = of_people(counts, np.arange(len(counts.participants)) == person)
     kept = thinned(draws, _DRAWS)
     place = [table.modes_of(question).index(mode) for mode in counts.modes]
-    model = model_of(settings, counts.levels, has_participants=True)
+    model = model_behind(draws.parameters, settings, counts.levels, has_participants=True)
     return log_likelihoods(counts, model, ThinnedDraws(kept.ability[:, place], kept.parameters))
 
 

@@ -10,7 +10,8 @@ Bradley & Terry 1952 (two levels); Rao & Kupper 1967 (three levels, their theta 
 levels: cumulative and adjacent logits for paired comparisons); Davidson 1970 (adjacent).
 """
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,6 +98,15 @@ def model_of(settings: FitSettings, levels: int, has_participants: bool) -> Mode
         )
     hierarchical = has_participants and not settings.pooled
     return Model(levels, settings.link, hierarchical, settings.side_effect, settings.prior_sd)
+
+
+def model_behind(
+    parameters: Collection[str], settings: FitSettings, levels: int, has_participants: bool
+) -> Model:
+    """The model that draws of these parameters come from: a fit leaves out a side effect that the answers
+    make unknown."""
+    model = model_of(settings, levels, has_participants)
+    return replace(model, side_effect="side_effect" in parameters)
 
 
 def thresholds(cuts: NDArray[np.float64], levels: int) -> NDArray[np.float64]:

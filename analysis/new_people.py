@@ -1,6 +1,6 @@
 """Answers of new people with the schedule of the old ones, at one draw of a fitted model's parameters."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,3 +86,16 @@ def chances_of(
             parameters[name] = (value + width) * ones if name == "log_nu" else value * ones
     chances = np.maximum(answer_probabilities(eta, parameters, levels), _LEAST_CHANCE)
     return np.asarray(chances / chances.sum(axis=-1, keepdims=True))
+
+
+def chances_for_person(
+    rows: AnswerRows, places: Answers, at: Sequence[Parameters], rng: np.random.Generator
+) -> FloatArray:
+    """Chance of every answer of a new person to what stands at some places: (draw, answer, level)."""
+    a, b = rows.mode_a[places], rows.mode_b[places]
+    found = np.empty((len(at), len(places), rows.levels))
+    for k, draw in enumerate(at):
+        person = people_of(draw, (1,), rng.standard_normal)
+        eta = draw.lead(a, b) + person.side + person.ability[0, a] - person.ability[0, b]
+        found[k] = chances_of(eta, draw.values, rows.levels, person.width)
+    return found

@@ -14,7 +14,7 @@ from analysis.answer_shares import ThinnedDraws, thinned
 from analysis.counts import Counts, count_responses
 from analysis.diagnostics import hdi
 from analysis.marginal import deviations
-from analysis.model import Model, model_of
+from analysis.model import Model, model_behind
 from analysis.results import HDI_PROBABILITY, Fit, QuestionFit
 from analysis.softmax import worth_of
 from analysis.zero_sum import zero_sum_basis
@@ -113,7 +113,7 @@ def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int)
     if len(modes) > MOST_MODES:
         reason = f"Each participant's own worths are worked out for at most {MOST_MODES} modes."
         return nothing(reason, modes[first], new_person)
-    model = model_of(fit.settings, counts.levels, table.has_participants)
+    model = model_behind(draws.parameters, fit.settings, counts.levels, table.has_participants)
     own, effective = _own_abilities(kept, modes, counts, model, rng)
     if effective < FEWEST_POINTS:
         reason = "Each participant's own worths would rest on too few points to be told."

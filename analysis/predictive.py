@@ -215,7 +215,8 @@ class _Compared:
 
 
 def _compared(table: ResponseTable, fit: Fit, question: QuestionFit, draws: Draws) -> _Compared:
-    rows = answer_rows(table, question.question)
+    modes = tuple(mode.mode for mode in question.modes)
+    rows = answer_rows(table, question.question, modes)
     if not knows_scale(draws.parameters, rows.levels):
         rows = rows.collapsed()
     name = question.question.name
@@ -228,7 +229,7 @@ def _compared(table: ResponseTable, fit: Fit, question: QuestionFit, draws: Draw
     answers = np.concatenate([rows.level[None], replicated(rows, at, n_sets, rng)])
     found = scores(rows, answers, at, n_points)
     quantities: dict[tuple[Kind, str], FloatArray] = {}
-    for (share, what), shares in answer_quantities(rows, answers, fit.modes).items():
+    for (share, what), shares in answer_quantities(rows, answers, modes).items():
         quantities[share, what] = shares
     for kind in get_args(Kind):
         if kind in found.checks:
@@ -236,7 +237,7 @@ def _compared(table: ResponseTable, fit: Fit, question: QuestionFit, draws: Draw
             quantities[kind, ""] = score / (float(score.std()) or 1.0)
     columns = tuple(quantities)
     values = np.stack([quantities[column] for column in columns], axis=1)
-    residual = _cleared(values, columns, found, at, fit.modes)
+    residual = _cleared(values, columns, found, at, modes)
     is_left = residual.std(axis=0) > _NOTHING_LEFT * values.std(axis=0) + 1e-9
     columns = tuple(column for column, kept in zip(columns, is_left, strict=True) if kept)
     values, residual = values[:, is_left], residual[:, is_left]

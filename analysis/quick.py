@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.counts import Counts
 from analysis.diagnostics import hdi
-from analysis.identifiability import examine
+from analysis.identifiability import examine, sides_are_alike
 from analysis.maximum import maximum_a_posteriori
 from analysis.model import Model
 from analysis.results import HDI_PROBABILITY
@@ -51,7 +51,8 @@ def quick_ranking(
     found = examine(counts, modes, has_participants=False, side_effect=False)
     if found.refusal:
         return QuickRanking((), found.refusal)
-    model = Model(counts.levels, "cumulative", False, side_effect, prior_sd)
+    has_side = side_effect and not sides_are_alike(counts.responses.sum(axis=0))
+    model = Model(counts.levels, "cumulative", False, has_side, prior_sd)
     estimate = maximum_a_posteriori(counts, model)
     rng = np.random.default_rng(seed)
     values, vectors = np.linalg.eigh(estimate.ability_covariance)

@@ -188,6 +188,8 @@ class QuestionFit:
         Comparisons that were never made and would be needed to connect the modes.
     hierarchical : bool
         True if participants have deviations of their own in this fit.
+    is_side_told_apart : bool
+        True if some pair was shown with its sides exchanged, so that a side effect differs from the modes.
     """
 
     question: QuestionScale
@@ -205,6 +207,7 @@ class QuestionFit:
     n_participants: int
     missing_pairs: tuple[tuple[str, str], ...] = ()
     hierarchical: bool = False
+    is_side_told_apart: bool = True
 
     @property
     def mode_names(self) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ from app.studies import open_study
 from data.errors import InputError
 from data.locations import check_folder, default_store
 from data.response_csv import read_response_csv
-from data.responses import BackgroundTable, LagTable, MetricTable, ResponseTable, StuckTable
+from data.responses import BackgroundTable, LagTable, MetricTable, PaceTable, ResponseTable, StuckTable
 from data.store import Store
 from data.study import Study
 
@@ -53,6 +53,7 @@ class _Evidence:
     excluded: LagExclusion | None = None
     metrics: MetricTable | None = None
     background: BackgroundTable | None = None
+    pace: PaceTable | None = None
 
 
 def make_report(request: Request) -> ReportResult:
@@ -99,6 +100,7 @@ def make_report(request: Request) -> ReportResult:
             excluded=excluded,
             metrics=evidence.metrics,
             refitted=refitted,
+            pace=evidence.pace,
         )
     for warning in fitted.warnings:
         print(f"note: {warning}", file=sys.stderr)
@@ -170,4 +172,5 @@ def _read(request: Request) -> _Evidence:
             store.lag_table(stored, include_simulated=request.include_simulated),
             metrics=store.metric_table(stored, include_simulated=request.include_simulated),
             background=store.background_table(stored, include_simulated=request.include_simulated),
+            pace=store.pace_table(stored, include_simulated=request.include_simulated),
         )

@@ -123,6 +123,20 @@ class LagTable:
 
 
 @dataclass(frozen=True)
+class PaceTable:
+    """How long the answers to a comparison took.
+
+    Attributes
+    ----------
+    rows : DataFrame
+        One row per comparison of which it is known: ``participant``, ``comparison`` (str), ``seconds``
+        (float; from the end of its last trial to the submission) and ``questions`` (int64; answered then).
+    """
+
+    rows: pd.DataFrame
+
+
+@dataclass(frozen=True)
 class MetricTable:
     """Objective metrics of the laps behind the answers.
 

@@ -30,7 +30,9 @@ def quantities(draws: Draws, counts: Counts, model: Model, design: Design) -> di
         The answers the draws were made from.
     """
     ability, worth = (x.reshape(-1, design.n_modes) for x in (draws.ability, draws.worth))
-    parameters = {name: draws.parameters[name].ravel() for name in model.parameter_names}
+    # A fit that leaves out the side effect, since all answers are for one side, says that it is 0.
+    none = np.zeros_like(draws.ability[..., 0])
+    parameters = {name: draws.parameters.get(name, none).ravel() for name in model.parameter_names}
     return _named(ability, worth, parameters, counts, model, design)
 
 

@@ -9,11 +9,13 @@ from analysis.data_quality import DataQuality
 from analysis.diagnostics import shown_ess, shown_rhat
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.lag import LagExclusion, ModeDelay
-from analysis.model import SUBJECT_SD_SCALE
 from analysis.predictive import PredictiveChecks
 from analysis.report.findings import Finding, listed
 from analysis.report.model_cautions import model_cautions
+from analysis.report.parameter_cautions import about_priors, about_sides
+from analysis.report.straight_lines import about_lines
 from analysis.results import Fit, QuestionFit
+from analysis.straight_lining import StraightLining
 from data.responses import ResponseTable
 from data.study import Study
 
@@ -21,8 +23,6 @@ FEW_PARTICIPANTS = 20
 """Below this the report calls participants few. Untuned: simulated studies of this kind with twenty
 people find the true first place surely in fewer than half of all cases."""
 _DIVIDED = 0.3
-_STRAINED = 2.576
-"""A half-normal distribution has 1 % beyond so many of its scales."""
 _MOST_OF_A_KIND = 3
 UNEQUAL_MS = 10.0
 """Difference between two modes' median input delay that the report warns of [ms]. Untuned."""
@@ -51,6 +51,7 @@ def cautions(
     checks: int,
     quality: DataQuality | None = None,
     model_checks: PredictiveChecks | None = None,
+    lines: StraightLining | None = None,
 ) -> tuple[str, ...]:
     """Plain sentences, the gravest first."""
     quality = quality or DataQuality()
@@ -63,8 +64,9 @@ def cautions(
         *fit.warnings,
         *_about_people(found),
         *model_cautions(model_checks or PredictiveChecks()),
-        *_about_priors(fit),
-        *_about_sides(fit),
+        *about_priors(fit),
+        *about_sides(fit),
+        *about_lines(lines or StraightLining()),
         *_about_what_is_left_out(quality.excluded),
         *_about_checks(checks),
         *_about_convergence(fit),
@@ -166,38 +168,6 @@ def _disagreeing(found: Finding) -> float | None:
     difference = ability[:, names.index(found.first)] - ability[:, names.index(found.rival)]
     tau = question.draws.parameters["subject_sd"].reshape(-1)
     return float(np.mean(ndtr(-difference / (np.sqrt(2) * np.maximum(tau, 1e-12)))))
-
-
-def _about_priors(fit: Fit) -> list[str]:
-    """Where the answers say what the priors hardly allow, so that the priors pull."""
-    strained = []
-    for question in fit.questions:
-        for p in question.parameters:
-            if p.name == "subject_sd" and p.hdi_low > _STRAINED * SUBJECT_SD_SCALE:
-                strained.append((p.mean, question.question.name))
-    said = []
-    if strained:
-        spread, name = max(strained)
-        more = f", as in {len(strained) - 1} more" if len(strained) > 1 else ""
-        said.append(
-            f"In {isolated(name)}{more} people differ by more (a standard deviation of {spread:.1f} logits) "
-            f"than the prior expects, which gives less than 1 % to {_STRAINED * SUBJECT_SD_SCALE:.1f} and "
-            "more. “elbowroom report --full” shows whether that matters."
-        )
-    return said
-
-
-def _about_sides(fit: Fit) -> list[str]:
-    said = []
-    for question in fit.questions:
-        for p in question.parameters:
-            if p.name == "side_effect" and (p.hdi_low > 0 or p.hdi_high < 0):
-                said.append((question, p.mean))
-    if not said:
-        return []
-    names = listed([isolated(q.question.name) for q, _ in said[:6]])
-    side = "A" if all(m > 0 for _, m in said) else "B" if all(m < 0 for _, m in said) else "one side"
-    return [f"{names}: whatever was shown as {side} was favoured; the ranking corrects for it."]
 
 
 def unequal_delays(delays: Sequence[ModeDelay]) -> list[str]:

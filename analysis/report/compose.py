@@ -28,9 +28,11 @@ from analysis.report.predictions import predictive_section
 from analysis.report.quality import checks_section, delay_section, exclusion_section
 from analysis.report.references import cited
 from analysis.report.refitted import metric_sections, people_sections, refit_sections
+from analysis.report.straight_lines import straight_section
 from analysis.report.stuck import contrasts_section, likely_difference, stuck_section
 from analysis.report.summary import known_comparisons
 from analysis.results import Fit
+from analysis.straight_lining import StraightLining
 from analysis.stuck import StuckRate
 from analysis.stuck_contrasts import StuckContrast
 from data.responses import ResponseTable
@@ -55,11 +57,12 @@ def compose(
     study: Study | None,
     cautions: Sequence[str],
     versions: dict[str, str],
+    lines: StraightLining | None = None,
 ) -> Page:
     """Everything the page prints, drawings included."""
     tag = simulated_tag(table)
     found = findings(fit)
-    said = methods(fit, look, rates, refitted, study, versions)
+    said = methods(fit, look, rates, refitted, study, versions, lines or StraightLining())
     names = unanswered(fit, study)
     silent = [(q.name, q.short) for q in study.questions if q.name in names] if study is not None else []
     worth, *parts = _numbered(
@@ -81,6 +84,7 @@ def compose(
                     agreement_section(look, fit, tag),
                     consistency_section(look),
                     *people_sections(refitted, fit, tag),
+                    straight_section(lines or StraightLining()),
                     checks_section(quality.checks),
                 ),
             ),

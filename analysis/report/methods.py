@@ -10,12 +10,13 @@ from analysis.closer_look import CloserLook
 from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, shown_ess, shown_rhat
 from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
 from analysis.event_rate import LOG_RATE_SD, MEDIAN_RATE, SPREAD_SCALE, UNKNOWN_MIN
-from analysis.figures.labels import LIKELY
+from analysis.figures.labels import LIKELY, isolated
 from analysis.fit import LONGER
 from analysis.persons import POINTS
 from analysis.refits import Refits
 from analysis.report.findings import listed
 from analysis.results import Fit
+from analysis.straight_lining import BY_CHANCE, FASTEST_S, SHORTEST_RUN, StraightLining
 from analysis.stuck import StuckRate
 from data.study import Study
 
@@ -50,6 +51,7 @@ def methods(
     refitted: Refits | None = None,
     study: Study | None = None,
     versions: Mapping[str, str] | None = None,
+    lines: StraightLining | None = None,
 ) -> tuple[Paragraph, ...]:
     """Paragraphs that let someone repeat the analysis.
 
@@ -60,7 +62,7 @@ def methods(
     versions : mapping of str to str
         Of the software behind the numbers, by name.
     """
-    more = [_closer(look), _stuck(rates), _refits(refitted)]
+    more = [_closer(look), _in_a_line(lines), _stuck(rates), _refits(refitted)]
     return (
         *_model(fit),
         Paragraph(_priors(fit)),
@@ -83,7 +85,10 @@ def _model(fit: Fit) -> list[Paragraph]:
     hierarchical = any(q.hierarchical for q in fit.questions)
     terms = ["<i>η</i> = <i>a</i><sub>A</sub> − <i>a</i><sub>B</sub>"]
     explained = []
-    if fit.settings.side_effect:
+    sided = [q for q in fit.questions if q.draws is not None and "side_effect" in q.draws.parameters]
+    sampled = [q for q in fit.questions if q.draws is not None]
+    has_side = bool(sided) if sampled else fit.settings.side_effect
+    if has_side:
         terms.append("<i>b</i>")
         explained.append("b is a side effect, a liking for whatever was shown as A")
     if hierarchical:
@@ -93,8 +98,11 @@ def _model(fit: Fit) -> list[Paragraph]:
             "is their standard deviation, so that several answers of one person do not count as independent"
         )
     missing = []
-    if not fit.settings.side_effect:
+    if not has_side:
         missing.append("There is no side effect in this model.")
+    elif len(sided) < len(sampled):
+        names = [isolated(q.question.name) for q in sampled if q not in sided]
+        missing.append(f"All answers to {listed(names)} are for one side: there it has no side effect.")
     if not hierarchical:
         missing.append(
             "Participants have no deviations of their own in this model (pooled): their answers count as "
@@ -264,6 +272,23 @@ def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
     return (
         f"{said} In this report the largest R-hat is {shown_rhat(fit.rhat_max)} and the smallest effective "
         f"sample size {shown_ess(fit.ess_min)}{diverged}."
+    )
+
+
+def _in_a_line(found: StraightLining | None) -> str:
+    if found is None or not found.lines:
+        return ""
+    fast = (
+        f", nor answers in a median of less than {FASTEST_S:g} second a question (Wood et al. 2017)"
+        if any(line.kind == "fast" for line in found.lines)
+        else ""
+    )
+    return (
+        "Participants whose answers all stand on one side as shown, though no order of the modes explains "
+        "that, are all the strongest or all “about the same”, or repeat one answer to a question at least "
+        f"{SHORTEST_RUN} times running (Johnson 2005), were pointed out where the chance that any of as many "
+        f"new participants does so is at most {BY_CHANCE:g} under the fitted model{fast}. The model was "
+        "fitted again without them."
     )
 
 

@@ -7,6 +7,7 @@ from analysis.checks import CheckShare
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.lag import LagExclusion, ModeDelay
 from analysis.report.cautions import unequal_delays
+from analysis.report.changes import changes_table
 from analysis.report.findings import listed
 from analysis.report.page import Section, Table
 
@@ -55,25 +56,8 @@ def exclusion_section(excluded: LagExclusion | None) -> Section | None:
         words.append(f"Of {excluded.unmeasured:,} of them nothing was measured; these stay.")
     if left:
         words.append("Worth and chance to rank first, with them and without:")
-    table = lag_changes_table(excluded, "lag.csv") if left else None
+    table = changes_table(excluded.changes, "lag.csv") if left else None
     return Section("Without the laggy comparisons", (), "", "", table, words=tuple(words))
-
-
-def lag_changes_table(excluded: LagExclusion, source: str) -> Table:
-    """Worth and chance to rank first, with the laggy comparisons and without."""
-    rows = tuple(
-        (
-            one_line(c.question),
-            one_line(c.mode),
-            _number(c.worth_with, 3, ""),
-            _number(c.worth_without, 3, ""),
-            _chance(c.p_best_with),
-            _chance(c.p_best_without),
-        )
-        for c in excluded.changes
-    )
-    columns = ("Question", "Mode", "Worth with", "Worth without", "First with", "First without")
-    return Table(columns, (False, False, *([True] * 4)), rows, source)
 
 
 def checks_section(shares: Sequence[CheckShare]) -> Section | None:
@@ -102,7 +86,3 @@ def checks_section(shares: Sequence[CheckShare]) -> Section | None:
 
 def _number(value: float, digits: int, unit: str) -> str:
     return "" if isnan(value) else f"{value:.{digits}f}{unit}"
-
-
-def _chance(p: float) -> str:
-    return "" if isnan(p) else f"{percent(p)} %"

@@ -97,6 +97,12 @@ SOURCES = (
     ),
     Reference(
         "Johnson",
+        2005,
+        "Johnson, J. A. (2005). Ascertaining the validity of individual protocols from web-based personality "
+        "inventories. Journal of Research in Personality 39(1), 103–129.",
+    ),
+    Reference(
+        "Johnson",
         2007,
         "Johnson, V. E. (2007). Bayesian model assessment using pivotal quantities. Bayesian Analysis 2(4), "
         "719–733.",
@@ -184,6 +190,13 @@ SOURCES = (
         1993,
         "Westfall, P. H. and Young, S. S. (1993). Resampling-based multiple testing: examples and methods "
         "for p-value adjustment. Wiley, New York.",
+    ),
+    Reference(
+        "Wood et al.",
+        2017,
+        "Wood, D., Harms, P. D., Lowman, G. H. and DeSimone, J. A. (2017). Response speed and response "
+        "consistency as mutually validating indicators of data quality in online samples. Social "
+        "Psychological and Personality Science 8(4), 454–464.",
     ),
 )
 """In the order of a list of references."""

@@ -5,11 +5,11 @@ from math import isnan
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.leaving_out import SMALL_DIFFERENCE, ModelScore
 from analysis.refits import Refits
+from analysis.report.changes import changes_table
 from analysis.report.findings import listed
 from analysis.report.moderated import moderation_section
 from analysis.report.page import Section, Table
 from analysis.report.physics import effects_section
-from analysis.report.quality import lag_changes_table
 from analysis.results import Fit
 from analysis.sensitivity import PriorShift
 
@@ -179,4 +179,4 @@ def _lag(found: Refits) -> Section | None:
         names = listed([isolated(name) for name in dict.fromkeys(lost)])
         text += f"Without them there is no ranking for {names}, left blank. {_NOT_USED} "
     text += "Worth and chance to rank first, with them and without:"
-    return Section(heading, (), "", "", lag_changes_table(excluded, "lag.csv"), words=(text,))
+    return Section(heading, (), "", "", changes_table(excluded.changes, "lag.csv"), words=(text,))

@@ -10,6 +10,7 @@ from analysis.closer_look import CloserLook
 from analysis.lag import LagChange, ModeDelay
 from analysis.refits import Refits
 from analysis.results import Fit, Quantity, QuestionFit
+from analysis.straight_lining import StraightLining
 from analysis.stuck import StuckRate
 from analysis.stuck_contrasts import StuckContrast
 
@@ -145,6 +146,12 @@ def write_closer_look(look: CloserLook, contrasts: Sequence[StuckContrast], fold
         ("stuck_contrasts", contrasts),
     ):
         _write_results(folder / f"{name}.csv", found)
+
+
+def write_straight_lines(found: StraightLining, folder: Path) -> None:
+    """Write who answers in a line, and what the ranking is without them, if anybody does."""
+    _write_results(folder / "careless.csv", found.lines)
+    _write_results(folder / "careless_left_out.csv", found.changes)
 
 
 def write_refits(refitted: Refits, folder: Path) -> None:

@@ -12,12 +12,19 @@ from analysis.refits import Refits
 from analysis.report.cautions import cautions
 from analysis.report.findings import findings
 from analysis.report.summary import Json, summarise, versions, write_summary
-from analysis.report.tables import write_closer_look, write_quality, write_refits, write_tables
+from analysis.report.tables import (
+    write_closer_look,
+    write_quality,
+    write_refits,
+    write_straight_lines,
+    write_tables,
+)
 from analysis.results import Fit, Quantity
+from analysis.straight_lining import straight_lining
 from analysis.stuck import StuckRate, stuck_rates
 from analysis.stuck_contrasts import stuck_contrasts
 from data.locations import writing_folder
-from data.responses import LagTable, MetricTable, ResponseTable, StuckTable
+from data.responses import LagTable, MetricTable, PaceTable, ResponseTable, StuckTable
 from data.study import Study
 
 Progress = Callable[[int, int, str], None]
@@ -35,6 +42,8 @@ OWNS = (
     "delay.csv",
     "lag.csv",
     "checks.csv",
+    "careless.csv",
+    "careless_left_out.csv",
     "equivalence.csv",
     "strength.csv",
     "people.csv",
@@ -83,6 +92,7 @@ def write_report(
     excluded: LagExclusion | None = None,
     metrics: MetricTable | None = None,
     refitted: Refits | None = None,
+    pace: PaceTable | None = None,
 ) -> ReportResult:
     """Write ``report.html``, its figures, and the tables, summary and posterior to a folder.
 
@@ -106,6 +116,8 @@ def write_report(
         Objective metrics of the laps behind the answers, where they are known.
     refitted : Refits or None
         What refits tell, for a full report.
+    pace : PaceTable or None
+        How long the answers took, where it is known.
 
     Raises
     ------
@@ -120,13 +132,15 @@ def write_report(
     quality = data_quality(table, fit.modes, lag, excluded)
     look = closer_look(table, fit, metrics)
     contrasts = stuck_contrasts(stuck, rates) if stuck is not None and rates else ()
-    said = cautions(table, fit, findings(fit), study, checks, quality, look.checks)
+    lines = straight_lining(table, fit, pace, lambda: tell(0, STEPS, "without people who answer in a line"))
+    said = cautions(table, fit, findings(fit), study, checks, quality, look.checks, lines)
     summary = summarise(table, fit, study, said, checks, excluded)
     with writing_folder(out, marker=MARKER, owns=OWNS) as folder:
         tell(0, STEPS, "tables")
         write_tables(fit, rates, _more_parameters(rates), folder)
         write_quality(quality.delays, excluded.changes if excluded else (), quality.checks, folder)
         write_closer_look(look, contrasts, folder)
+        write_straight_lines(lines, folder)
         if refitted is not None:
             write_refits(refitted, folder)
         write_summary(summary, folder / "summary.json")
@@ -147,6 +161,7 @@ def write_report(
             study,
             said,
             versions(fit.settings.engine),
+            lines,
         )
         figures = folder / "figures"
         figures.mkdir()

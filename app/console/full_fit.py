@@ -13,7 +13,7 @@ from typing import Self
 
 from app.console.aside import Aside, Teller
 from app.server.desk import Desk
-from data.responses import LagTable, MetricTable, ResponseTable, StuckTable
+from data.responses import LagTable, MetricTable, PaceTable, ResponseTable, StuckTable
 from data.study import Study
 
 
@@ -102,6 +102,7 @@ class _Evidence:
     stuck: StuckTable | None
     lag: LagTable | None
     metrics: MetricTable | None
+    pace: PaceTable | None
     study: Study
 
     @classmethod
@@ -112,6 +113,7 @@ class _Evidence:
             store.stuck_table(stored, include_simulated),
             store.lag_table(stored, include_simulated),
             store.metric_table(stored, include_simulated),
+            store.pace_table(stored, include_simulated),
             stored.study,
         )
 
@@ -131,5 +133,6 @@ def _fit(tell: Teller, evidence: _Evidence, folder: Path) -> None:
         progress=tell.part("Writing"),
         lag=evidence.lag,
         metrics=evidence.metrics,
+        pace=evidence.pace,
     )
     tell.give(tuple(fitted.warnings))

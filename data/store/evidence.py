@@ -12,6 +12,7 @@ from data.responses import (
     BackgroundTable,
     LagTable,
     MetricTable,
+    PaceTable,
     QuestionScale,
     ResponseTable,
     StuckTable,
@@ -46,6 +47,9 @@ STUCK_TYPES = {
 }
 """Columns of a stuck table, in order, with their types."""
 
+
+PACE_TYPES = {"participant": "str", "comparison": "str", "seconds": "float64", "questions": "int64"}
+"""Columns of a pace table, in order, with their types."""
 
 LAG_METRICS = ("latency_median_ms", "latency_p95_ms", "frame_rate_hz", "ticks", "skipped_ticks")
 """What a lag table takes of a guided trial's metrics."""
@@ -221,6 +225,49 @@ class StoredEvidence(StoredLinks):
             for trial in known
         ]
         return LagTable(pd.DataFrame(rows))
+
+    def pace_table(self, study: StoredStudy, include_simulated: bool = False) -> PaceTable | None:
+        """How long the answers took, comparison by comparison; None if it is known of none.
+
+        Attention checks are left out, and comparisons with a trial that began or ended at an unknown time.
+        """
+        sources = self.sources(study, include_simulated)
+        number = (
+            select(responses.c.comparison, func.count().label("questions"))
+            .group_by(responses.c.comparison)
+            .subquery()
+        )
+        query = (
+            select(
+                comparisons.c.participant,
+                trials.c.comparison,
+                trials.c.started_at,
+                trials.c.duration_s,
+                comparisons.c.answered_at,
+                number.c.questions,
+            )
+            .join_from(trials, comparisons)
+            .join(participants)
+            .join(number, number.c.comparison == comparisons.c.id)
+            .where(
+                participants.c.study == study.id,
+                participants.c.source.in_(sources),
+                trials.c.source.in_(["observed", "guided"]),
+                comparisons.c.answered_at.is_not(None),
+                comparisons.c.check.is_(False),
+            )
+            .order_by(participants.c.source, participants.c.number, participants.c.id, comparisons.c.position)
+        )
+        with self.reading() as connection:
+            known = every(connection, query)
+        if not known:
+            return None
+        table = pd.DataFrame(known)
+        since = (table["answered_at"] - table["started_at"]).dt.total_seconds() - table["duration_s"]
+        table["seconds"] = since.groupby(table["comparison"]).transform("min")
+        is_known = since.notna().groupby(table["comparison"]).transform("all") & (table["seconds"] >= 0.0)
+        table = table[is_known].drop_duplicates("comparison", ignore_index=True)
+        return PaceTable(table[list(PACE_TYPES)].astype(PACE_TYPES)) if len(table) else None
 
     def metric_table(self, study: StoredStudy, include_simulated: bool = False) -> MetricTable | None:
         """Objective metrics of the laps behind the answers; None if none has any.
