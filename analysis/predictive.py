@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from analysis.answer_quantities import OVER, answer_quantities
+from analysis.answer_quantities import OVER, Share, answer_quantities
 from analysis.answer_rows import AnswerRows, answer_rows
 from analysis.answer_scores import Scores, scores
 from analysis.answer_shares import knows_scale
@@ -53,6 +53,8 @@ Kind = Literal[
 ]
 FloatArray = NDArray[np.float64]
 
+SHARES: tuple[Kind, ...] = get_args(Share)
+"""Kinds in units of their own, from 0 up."""
 UNLIKELY = 0.06
 """A check whose p is at most this is pointed out: the observed value lies outside the central 94 %."""
 SURELY_UNLIKELY = 0.06
@@ -197,13 +199,16 @@ class _Compared:
             middle = seen - float(rest[0])
             tails = (0.0, 1 - UNLIKELY) if kind in ONE_SIDED else (UNLIKELY / 2, 1 - UNLIKELY / 2)
             low, high = middle + np.quantile(rest[1:], tails)
+            mean = middle + float(rest[1:].mean())
+            if kind in SHARES:
+                low, mean, high = np.clip((low, mean, high), 0.0, 1.0 if kind != "spread" else np.inf)
             found.append(
                 PredictiveCheck(
                     self.question,
                     kind,
                     what,
                     seen,
-                    middle + float(rest[1:].mean()),
+                    float(mean),
                     float(low),
                     float(high),
                     float(self.p[0, k]),

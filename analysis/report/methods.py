@@ -87,7 +87,7 @@ def _model(fit: Fit) -> list[Paragraph]:
     explained = []
     sided = [q for q in fit.questions if q.draws is not None and "side_effect" in q.draws.parameters]
     sampled = [q for q in fit.questions if q.draws is not None]
-    has_side = bool(sided) if sampled else fit.settings.side_effect
+    has_side = fit.settings.side_effect and (bool(sided) or not sampled)
     if has_side:
         terms.append("<i>b</i>")
         explained.append("b is a side effect, a liking for whatever was shown as A")

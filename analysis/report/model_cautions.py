@@ -25,7 +25,8 @@ GRAVEST_FIRST: tuple[Kind, ...] = (
 _HIGH: dict[Kind, str] = {
     "repeats": (
         "asked about a pair again, people gave the same answer more often than the model expects, as "
-        "remembered answers do. Such answers tell less than new ones, and the intervals are too narrow"
+        "remembered answers do, or tastes for single pairs. Either way the repeats tell less than new "
+        "answers, and the intervals are too narrow"
     ),
     "spread": (
         "people lie farther apart than the model expects, which takes their answers together. The intervals "
@@ -111,4 +112,4 @@ def _sentence(own: Sequence[PredictiveCheck]) -> str:
     return f"The model does not fit in {named}: {text}."
 
 
-_SHARE: dict[Kind, str] = {"wins": "", "level": "", "ties": "about the same"}
+_SHARE: dict[Kind, str] = {"wins": "", "level": "the answer ", "ties": "about the same"}

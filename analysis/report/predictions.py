@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from analysis.closer_look import CloserLook
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.figures.predictive import MOST_PAIRS, NAMES, draw_predictive
-from analysis.predictive import UNLIKELY, Kind, PredictiveCheck
+from analysis.predictive import SHARES, UNLIKELY, Kind, PredictiveCheck
 from analysis.report.findings import listed
 from analysis.report.page import Section, Table
 from analysis.results import Fit
 
 _MOST_SAID = 6
-_SHARES: tuple[Kind, ...] = ("wins", "ties", "level", "spread")
 _MEANINGS: dict[Kind, str] = {
     "wins": "the share of a pair's answers for the first mode",
     "ties": "of ties",
@@ -55,7 +54,7 @@ def predictive_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
         (
             one_line(c.question),
             check_name(c),
-            *(_shares(c) if c.kind in _SHARES else ("", "", "")),
+            *(_shares(c) if c.kind in SHARES else ("", "", "")),
             f"{c.z:+.2f}".replace("-", "\u2212"),
             _p(c.p),
             _p(c.p_all),
@@ -89,14 +88,14 @@ def _read_on(far: Sequence[PredictiveCheck], at_most: int) -> str:
     if sure:
         names = listed([f"{check_name(c)} on {isolated(c.question)}" for c in sure[:_MOST_SAID]])
         return (
-            f"Too far out for the most extreme of so many checks: {names}. What that means stands in “Before "
-            "you quote this”."
+            f"Farther out than chance explains even for the most extreme of so many checks: {names}. What "
+            "that means stands in “Before you quote this”."
         )
     if len(far) > at_most:
         return "Each may be chance, but together they are more than chance explains."
     return (
         "That is no more than chance explains. It does not show that the model is right: few answers "
-        "contradict little, and what careless answers change is hard to see in any number of them."
+        "contradict little, and careless answers above all are hard to see where preferences are weak."
     )
 
 

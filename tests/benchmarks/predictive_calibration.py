@@ -60,10 +60,10 @@ class Person:
         return level
 
 
-def normal_person(rng: np.random.Generator) -> FloatArray:
+def normal_person(rng: np.random.Generator, strength: float = 1.0) -> FloatArray:
     """A person's own abilities, as the model has them."""
     z = rng.normal(size=3)
-    return ABILITY + SUBJECT_SD * (z - z.mean())
+    return strength * ABILITY + SUBJECT_SD * (z - z.mean())
 
 
 def in_camps(rng: np.random.Generator) -> FloatArray:
@@ -74,6 +74,9 @@ def in_camps(rng: np.random.Generator) -> FloatArray:
 FAULTS: dict[str, Callable[[np.random.Generator], Person]] = {
     "none": lambda rng: Person(normal_person(rng)),
     "15 % of answers careless": lambda rng: Person(normal_person(rng), careless=0.15),
+    "15 % careless, preferences six times as strong": lambda rng: Person(
+        normal_person(rng, 6.0), careless=0.15
+    ),
     "width of scale by person, sd .6": lambda rng: Person(
         normal_person(rng), width=np.exp(0.6 * rng.normal())
     ),

@@ -107,3 +107,21 @@ def test_tables_without_some_comparisons_keep_modes_questions_and_order(store, f
     assert set(left_stuck.rows["comparison"]) == set(left.rows["comparison"])
     assert left.sha256 != table.sha256
     assert table.without(()).sha256 == table.sha256
+
+
+def test_the_pace_counts_from_the_end_of_the_last_trial_to_the_submission(store, stored, study, noon):
+    store.add_trial(trial(noon))
+    store.add_trial(trial(noon, slot="B", started_at=noon + timedelta(seconds=60)))
+    answers = {question.name: "A=B" for question in study.questions}
+    store.submit_responses("anna.c1", answers, noon + timedelta(seconds=103))
+    (row,) = store.pace_table(stored).rows.to_dict("records")
+    assert row == {"participant": "anna", "comparison": "anna.c1", "seconds": 3.0, "questions": 6}
+
+
+def test_a_trial_of_unknown_duration_leaves_the_pace_unknown(store, stored, study, noon):
+    assert store.pace_table(stored) is None
+    store.add_trial(trial(noon, duration_s=math.nan))
+    store.add_trial(trial(noon, slot="B"))
+    answers = {question.name: "A=B" for question in study.questions}
+    store.submit_responses("anna.c1", answers, noon + timedelta(seconds=103))
+    assert store.pace_table(stored) is None

@@ -68,7 +68,7 @@ def test_the_page_loads_nothing_from_anywhere(study_page):
 
 def test_every_drawing_has_words_for_who_cannot_see_it_and_numbers_behind_it(study_page):
     reader, page = study_page
-    assert len(reader.labels) == 10
+    assert len(reader.labels) == 11
     assert all(len(label) > 40 for label in reader.labels)
     assert reader.tags.count("figcaption") == 10
     folded = re.findall(r"<summary>(.*?)</summary>", page)

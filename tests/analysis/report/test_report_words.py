@@ -71,15 +71,29 @@ def test_warnings_of_the_fit_reach_the_reader_once(study_case):
     assert "4 answers to attention checks are left out of the model." in said
 
 
-def test_a_side_that_was_favoured_is_named(study_case):
-    question = study_case.fit.questions[0]
+def with_parameter(case, name, mean, spread=0.4, **more):
+    """A fit of the first question alone, with one parameter as it is told."""
+    question = case.fit.questions[0]
     parameters = tuple(
-        replace(p, mean=0.5, hdi_low=0.1, hdi_high=0.9) if p.name == "side_effect" else p
+        replace(p, mean=mean, hdi_low=mean - spread, hdi_high=mean + spread) if p.name == name else p
         for p in question.parameters
     )
-    fit = replace(study_case.fit, questions=(replace(question, parameters=parameters),))
-    said = cautions(study_case.table, fit, findings(fit), None, 0)
-    assert "Q2: whatever was shown as A was favoured; the ranking corrects for it." in said
+    return replace(case.fit, questions=(replace(question, parameters=parameters, **more),))
+
+
+def test_a_side_that_was_favoured_is_named_and_never_called_corrected(study_case):
+    def said(mean, **more):
+        fit = with_parameter(study_case, "side_effect", mean, **more)
+        return " ".join(cautions(study_case.table, fit, findings(fit), None, 0))
+
+    ordinary, beyond, confounded = said(0.5), said(-1.3), said(0.5, is_side_told_apart=False)
+    assert "Q2: whatever was shown as A was favoured. The model has a side effect for that" in ordinary
+    assert "Q2: whatever was shown as B was favoured by more than the model's side effect can" in beyond
+    assert "In Q2 the side effect lies beyond what its prior expects (-1.3 logits" in beyond
+    assert "no pair was shown with its sides exchanged" in confounded
+    assert "The model has a side effect for that" not in beyond + confounded
+    assert "correct" not in ordinary + beyond + confounded
+    assert "favoured" not in said(0.3)
 
 
 def test_a_fit_that_did_not_converge_says_so(study_case):
@@ -166,15 +180,13 @@ def test_a_robot_that_never_got_stuck_is_said_to_with_the_number_of_comparisons(
     assert said == "The robot never got stuck, in 24 comparisons with each mode."
 
 
-def test_people_who_differ_more_than_the_prior_expects_are_pointed_out(study_case):
-    def said(low):
-        question = study_case.fit.questions[0]
-        parameters = tuple(
-            replace(p, mean=4.2, hdi_low=low, hdi_high=4.6) if p.name == "subject_sd" else p
-            for p in question.parameters
-        )
-        fit = replace(study_case.fit, questions=(replace(question, parameters=parameters),))
+def test_what_lies_beyond_its_prior_is_pointed_out(study_case):
+    def said(name, mean):
+        fit = with_parameter(study_case, name, mean)
         return " ".join(cautions(study_case.table, fit, findings(fit), None, 0))
 
-    assert "In Q2 people differ by more (a standard deviation of 4.2 logits) than the prior" in said(3.8)
-    assert "than the prior expects" not in said(2.5)
+    assert "In Q2 the spread between people lies beyond what its prior expects (4.2 logits" in said(
+        "subject_sd", 4.2
+    )
+    assert "In Q2 the gap below cut-point 1 lies beyond what its prior expects (2.4" in said("cut_1", 2.4)
+    assert "beyond what its prior" not in said("subject_sd", 1.9) + said("cut_1", 1.9)
