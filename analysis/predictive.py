@@ -32,6 +32,7 @@ from analysis.answer_scores import Scores, scores
 from analysis.answer_shares import knows_scale
 from analysis.engines.fast import question_seed
 from analysis.exchangeable import chances, residuals, sizes
+from analysis.identifiability import sides_are_alike
 from analysis.new_people import Parameters, replicated
 from analysis.results import Draws, Fit, QuestionFit
 from data.responses import ResponseTable
@@ -68,6 +69,7 @@ ONE_SIDED: tuple[Kind, ...] = (
     "repeats",
 )
 """Kinds whose large values alone speak against the model: what they look for cannot be below nothing."""
+_FOLLOWING_FROM_ONE_SIDE: tuple[Kind, ...] = ("side", "side_by_person", "side_drift", "one_line", "camps")
 MOST_ANSWERS = 10_000
 """With more answers the checks look at people drawn at random, with about so many answers."""
 _SETS_OF_FEW, _SETS_OF_MANY = 400, 200
@@ -236,8 +238,10 @@ def _compared(table: ResponseTable, fit: Fit, question: QuestionFit, draws: Draw
     quantities: dict[tuple[Kind, str], FloatArray] = {}
     for (share, what), shares in answer_quantities(rows, answers, modes).items():
         quantities[share, what] = shares
+    # Where all answers are for one side the fit leaves the side effect out and says so: these would follow.
+    is_one_sided = sides_are_alike(np.bincount(rows.level, minlength=rows.levels))
     for kind in get_args(Kind):
-        if kind in found.checks:
+        if kind in found.checks and not (is_one_sided and kind in _FOLLOWING_FROM_ONE_SIDE):
             score = found.checks[kind] - found.checks[kind].mean()
             quantities[kind, ""] = score / (float(score.std()) or 1.0)
     columns = tuple(quantities)

@@ -94,7 +94,7 @@ def _changed(changes: Sequence[LagChange]) -> str:
         most = max(known, key=lambda c: abs(c.worth_without - c.worth_with))
         said.append(
             "Without them the same modes come first; the largest change of a worth is that of "
-            f"{one_line(most.mode)} on {isolated(most.question)}, from {most.worth_with:.2f} to "
-            f"{most.worth_without:.2f}."
+            f"{one_line(most.mode)} on {isolated(most.question)}, from {most.worth_with:.3f} to "
+            f"{most.worth_without:.3f}."
         )
     return " ".join(said)

@@ -141,6 +141,8 @@ def test_a_model_without_a_side_effect_is_told_that_a_side_was_favoured(table_of
     assert "side" in kinds(without, sure=True)
     assert "side" not in {c.kind for c in checks_of(table).checks}
     assert any("shown as A was favoured" in text for text in model_cautions(without))
+    winner_first = study(table_of, 8, lambda rng, who, a, b, last: int(rng.integers(2)))
+    assert not {"side", "side_by_person", "side_drift"} & {c.kind for c in checks_of(winner_first).checks}
 
 
 def test_every_kind_has_a_sentence_and_the_gravest_stands_first(table_of):
