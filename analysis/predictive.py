@@ -222,7 +222,7 @@ class _Compared:
 
 
 def _compared(table: ResponseTable, fit: Fit, question: QuestionFit, draws: Draws) -> _Compared:
-    modes = tuple(mode.mode for mode in question.modes)
+    modes = question.mode_names
     rows = answer_rows(table, question.question, modes)
     if not knows_scale(draws.parameters, rows.levels):
         rows = rows.collapsed()

@@ -172,7 +172,7 @@ def _lines(table: ResponseTable, fit: Fit) -> Iterator[Line]:
 
 def _question(table: ResponseTable, fit: Fit, question: QuestionFit) -> _Question:
     assert question.draws is not None
-    rows = answer_rows(table, question.question, tuple(mode.mode for mode in question.modes))
+    rows = answer_rows(table, question.question, question.mode_names)
     if not knows_scale(question.draws.parameters, rows.levels):
         rows = rows.collapsed()
     draws = thinned(question.draws, _DRAWS)
