@@ -15,8 +15,9 @@ from analysis.fit import LONGER
 from analysis.persons import POINTS
 from analysis.refits import Refits
 from analysis.report.findings import listed
+from analysis.report.line_methods import methods_of_lines
 from analysis.results import Fit
-from analysis.straight_lining import BY_CHANCE, FASTEST_S, SHORTEST_RUN, StraightLining
+from analysis.straight_lining import StraightLining
 from analysis.stuck import StuckRate
 from data.study import Study
 
@@ -62,7 +63,7 @@ def methods(
     versions : mapping of str to str
         Of the software behind the numbers, by name.
     """
-    more = [_closer(look), _in_a_line(lines), _stuck(rates), _refits(refitted)]
+    more = [_closer(look), methods_of_lines(lines), _stuck(rates), _refits(refitted)]
     return (
         *_model(fit),
         Paragraph(_priors(fit)),
@@ -272,23 +273,6 @@ def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
     return (
         f"{said} In this report the largest R-hat is {shown_rhat(fit.rhat_max)} and the smallest effective "
         f"sample size {shown_ess(fit.ess_min)}{diverged}."
-    )
-
-
-def _in_a_line(found: StraightLining | None) -> str:
-    if found is None or not found.lines:
-        return ""
-    fast = (
-        f", nor answers in a median of less than {FASTEST_S:g} second a question (Wood et al. 2017)"
-        if any(line.kind == "fast" for line in found.lines)
-        else ""
-    )
-    return (
-        "Participants whose answers all stand on one side as shown, though no order of the modes explains "
-        "that, are all the strongest or all “about the same”, or repeat one answer to a question at least "
-        f"{SHORTEST_RUN} times running (Johnson 2005), were pointed out where the chance that any of as many "
-        f"new participants does so is at most {BY_CHANCE:g} under the fitted model{fast}. The model was "
-        "fitted again without them."
     )
 
 
