@@ -7,6 +7,7 @@ import typer
 
 from app.cli import (
     calibrate,
+    convert,
     demo,
     doctor,
     exchange,
@@ -40,6 +41,7 @@ cli.command("load")(load.load)
 cli.command("calibrate")(calibrate.calibrate)
 cli.command("reproduce")(reproduce.reproduce)
 cli.command("report")(report.report)
+cli.command("convert")(convert.convert)
 cli.command("export")(exchange.export)
 cli.command("import")(exchange.import_)
 cli.add_typer(study.cli, name="study")

@@ -1,0 +1,180 @@
+"""How a file was read, in lines for the terminal: each column, what was left out and why, how many."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from data.convert.items import Item
+from data.convert.map import ConversionMap
+from data.convert.rankings import ResolvedRanking
+from data.convert.reading_answers import NoAnswer, Preference
+from data.convert.rows import Reason
+from data.convert.table import MOST_SHOWN, Row, Table, counted, listed
+from data.csv_file import shown
+
+
+@dataclass
+class _Left:
+    rows: int = 0
+    answers: int = 0
+    column: str = ""
+    values: dict[str, None] = field(default_factory=dict)
+    per_column: str = ""
+    per: set[str] = field(default_factory=set)
+    places: list[str] = field(default_factory=list)
+
+    @property
+    def condition(self) -> str:
+        """The column and its values that say why."""
+        return f" ({self.column} = {listed(self.values)})" if self.column else ""
+
+    @property
+    def lines(self) -> str:
+        """The lines in the file."""
+        return f"{'line' if len(self.places) == 1 else 'lines'} {listed(self.places)}"
+
+
+class Account:
+    """Counts while a file is read."""
+
+    def __init__(
+        self,
+        table: Table,
+        wanted: ConversionMap,
+        items: tuple[Item, ...],
+        rankings: tuple[ResolvedRanking, ...],
+    ) -> None:
+        self._table, self._wanted = table, wanted
+        self._items, self._rankings = items, rankings
+        self._rows: dict[str, _Left] = {}
+        self._answers: dict[str, _Left] = {}
+        self._taken: dict[str, _Left] = {}
+        self._notes: list[str] = list(table.notes)
+
+    def row_left_out(self, reason: Reason, row: Row, answers: int, who: str = "") -> None:
+        """Count a row that does not count, with the answers in it."""
+        self._add(self._rows, reason, row, answers, who)
+
+    def taken(self, reason: Reason, row: Row, answers: int) -> None:
+        """Count answers that are taken although something speaks against them."""
+        self._add(self._taken, reason, row, answers)
+
+    def no_answer(self, outcome: NoAnswer, row: Row, who: str) -> None:
+        """Count an answer that is none, in a row that counts."""
+        column = f" in {shown(outcome.column)}" if outcome.column else ""
+        self._add(self._answers, Reason(f"{column}: {outcome.reason}"), row, 1, who)
+
+    def _add(self, lefts: dict[str, _Left], reason: Reason, row: Row, answers: int, who: str = "") -> None:
+        left = lefts.setdefault(reason.text, _Left(column=reason.column, per_column=reason.per_column))
+        left.rows += 1
+        left.answers += answers
+        left.values[reason.value] = None
+        if reason.per_value is not None:
+            left.per.add(reason.per_value)
+        inside = row.path.removeprefix(f"{self._table.path}/")
+        place = f"{row.line}" if row.path == self._table.path else f"{inside}:{row.line}"
+        left.places.append(f"{place}{who}")
+
+    def note(self, text: str) -> None:
+        """Add a line of its own."""
+        self._notes.append(text)
+
+    def left_out_lines(self) -> list[str]:
+        """A line a reason, rows first."""
+        lines = []
+        for reason, left in self._rows.items():
+            rows = counted(left.rows, "row") + (f" of {len(left.per)} {left.per_column}" if left.per else "")
+            answers = f" with {counted(left.answers, 'answer')}" if left.answers else ""
+            lines.append(f"left out: {rows}{answers}: {reason}{left.condition}; {left.lines}")
+        for reason, left in self._answers.items():
+            lines.append(f"no answer: {left.answers}{reason}; {left.lines}")
+        for reason, left in self._taken.items():
+            answers = counted(left.answers, "answer")
+            lines.append(f"taken all the same: {answers}: {reason}{left.condition}; {left.lines}")
+        return lines
+
+    def lines(self, preferences: list[Preference]) -> list[str]:
+        """All that is to be said about a conversion."""
+        return [
+            *self._column_lines(preferences),
+            *self.left_out_lines(),
+            *_tie_lines(preferences),
+            *self._unused_lines(preferences),
+            *self._side_lines(preferences),
+            *self._notes,
+        ]
+
+    def _column_lines(self, preferences: list[Preference]) -> list[str]:
+        wanted = self._wanted
+        lines = [
+            f"{wanted.participant}: participant" if wanted.participant else "participant: nobody is named"
+        ]
+        words: dict[str, Counter[tuple[str, str]]] = {}
+        for preference in preferences:
+            words.setdefault(preference.column, Counter())[preference.word, preference.response] += 1
+        for item in self._items:
+            meanings = words.get(item.source.name, Counter()).most_common(MOST_SHOWN)
+            read = ", ".join(f"{shown(word)} = {answer} ({n})" for (word, answer), n in sorted(meanings))
+            lines.append(f"{shown(item.source.name)}: {self._item(item)}; {read or 'no response'}")
+        for ranking in self._rankings:
+            columns = listed(column.name for column in ranking.columns)
+            modes = listed(ranking.modes)
+            lines.append(f"{columns}: ranking of {modes}, as question {ranking.spec.question}")
+        for role, name in (("count", wanted.count), ("comparison", wanted.comparison)):
+            if name:
+                lines.append(f"{name}: {role}")
+        used = {column.place for item in self._items for column in item.used}
+        used |= {column.place for ranking in self._rankings for column in ranking.columns}
+        names = {wanted.participant, wanted.count, wanted.comparison, *wanted.keep}
+        names |= {rule.column for rule in wanted.rows}
+        rest = [
+            name
+            for place, name in enumerate(self._table.names)
+            if place not in used and name and name not in names and not name.startswith("@")
+        ]
+        if rest:
+            lines.append(f"not used: {listed(rest)}")
+        return lines
+
+    def _item(self, item: Item) -> str:
+        """How an item is read: its question and its sides."""
+        question = f"column {item.question.name}" if item.question else item.spec.question
+        if item.left and item.right:
+            sides = f"left in {shown(item.left.name)}, right in {shown(item.right.name)}"
+        elif item.pair:
+            sides = f"left and right by {item.pair.name}"
+        else:
+            left, right = self._wanted.pairs[next(key for key in item.keys if key in self._wanted.pairs)]
+            sides = f"left {left}, right {right}"
+        order = f", exchanged by {item.order.name}" if item.order else ""
+        return f"answer to {question}, {sides}{order}"
+
+    def _unused_lines(self, preferences: list[Preference]) -> list[str]:
+        """Words of the user's that do not occur: perhaps a misspelling."""
+        told = [word for word, meaning in self._wanted.words.items() if not meaning.startswith("none")]
+        seen = {preference.word for preference in preferences}
+        rest = [word for word in told if word not in seen]
+        return [f"not in the file: the words {listed(rest)}"] if rest else []
+
+    def _side_lines(self, preferences: list[Preference]) -> list[str]:
+        lines = []
+        unknown = sum(not preference.is_side_known for preference in preferences)
+        if unknown:
+            lines.append(
+                f"sides unknown: {unknown} of {counted(len(preferences), 'response')}: the file does not say "
+                "what was shown as A; report them with --no-side-effect"
+            )
+        if self._rankings:
+            lines.append("pairs of one ranking are not independent: intervals from them are too narrow")
+        scale = self._wanted.scale
+        if scale and (scale.levels % 2 == 0 or scale.levels > 5):
+            lines.append(f"a scale of {scale.levels} levels: report it with --levels {scale.levels}")
+        return lines
+
+
+def _tie_lines(preferences: list[Preference]) -> list[str]:
+    """Ties by word, where several words are ties."""
+    ties = Counter(preference.word for preference in preferences if preference.response == "A=B")
+    if len(ties) < 2:
+        return []
+    words = ", ".join(f"{n} {shown(word)}" for word, n in ties.items())
+    return [f"ties: {ties.total()}, of which {words}"]

@@ -1,0 +1,124 @@
+"""The answer columns of a map as they are in a file."""
+
+from dataclasses import dataclass
+
+from data.convert.map import AnswerColumn, ConversionMap
+from data.convert.table import Column, Table, listed, plain
+from data.csv_file import shown
+from data.errors import InputError
+
+
+@dataclass(frozen=True)
+class Item:
+    """One answer of a row: the columns that say it.
+
+    Attributes
+    ----------
+    keys : tuple of str
+        Under which the item's pair may stand in the map, the first that is there.
+    comparison : str
+        Which of a person's comparisons the item belongs to; empty if a row is one.
+    """
+
+    spec: AnswerColumn
+    answer: Column | None
+    left: Column | None
+    right: Column | None
+    pair: Column | None
+    chosen: Column | None
+    question: Column | None
+    order: Column | None
+    other: Column | None
+    one_of: tuple[tuple[Column, str], ...]
+    keys: tuple[str, ...]
+    comparison: str = ""
+
+    @property
+    def source(self) -> Column:
+        """The column that an answer is read from, for messages."""
+        columns = (self.answer, self.chosen, self.left, self.right, self.pair)
+        first = self.one_of[0][0] if self.one_of else next((column for column in columns if column), None)
+        assert first is not None
+        return first
+
+    @property
+    def used(self) -> list[Column]:
+        """All its columns."""
+        columns = (self.answer, self.left, self.right, self.pair, self.chosen, self.question, self.order)
+        return [column for column in (*columns, self.other, *(c for c, _ in self.one_of)) if column]
+
+
+def resolve_items(table: Table, wanted: ConversionMap) -> list[Item]:
+    """The items of a map in the order of their columns in the file.
+
+    Raises
+    ------
+    InputError
+        If a column is missing or nothing says what was on the two sides.
+    """
+    items = [item for spec in wanted.answers for item in _expanded(table, spec)]
+    if len({(spec.left, spec.right, spec.pair) for spec in wanted.answers}) > 1:
+        items = [_named(item) for item in items]
+    for item in items:
+        _check_sides(table, item, wanted)
+    return sorted(items, key=lambda item: item.source.place)
+
+
+def _named(item: Item) -> Item:
+    """The item with its own column as its comparison: its number may mean something else in another."""
+    return Item(**{**vars(item), "comparison": item.source.name if item.comparison else ""})
+
+
+def _expanded(table: Table, spec: AnswerColumn) -> list[Item]:
+    pattern = spec.column or next((name for name in (spec.chosen, spec.left) if "*" in name), "")
+    if "*" not in pattern or table.find(pattern):
+        is_one_of_several = bool(spec.column) and not spec.pair and "*" in spec.left
+        return [_item(table, spec, spec.column, (plain(spec.column), spec.question), is_one_of_several)]
+    numbers = table.matches(pattern)
+    if not numbers:
+        raise InputError(
+            f"{table.path}: no column is named {shown(pattern)} with a whole number for *; "
+            f"columns: {table.labels}"
+        )
+    items = []
+    for number in numbers:
+        column = plain(pattern).replace("*", number)
+        keys = (number, column, plain(pattern))
+        items.append(_item(table, spec, number, keys, is_one_of_several=True))
+    return items
+
+
+def _item(
+    table: Table, spec: AnswerColumn, star: str, keys: tuple[str, ...], is_one_of_several: bool
+) -> Item:
+    def column(reference: str) -> Column | None:
+        return table.column(reference.replace("*", star)) if reference else None
+
+    return Item(
+        spec=spec,
+        answer=column(spec.column),
+        left=column(spec.left),
+        right=column(spec.right),
+        pair=column(spec.pair),
+        chosen=column(spec.chosen),
+        question=column(spec.question_column),
+        order=column(spec.order.column) if spec.order else None,
+        other=column(spec.other),
+        one_of=tuple((table.column(name.replace("*", star)), word) for name, word in spec.one_of.items()),
+        keys=keys,
+        comparison=star if is_one_of_several else "",
+    )
+
+
+def _check_sides(table: Table, item: Item, wanted: ConversionMap) -> None:
+    if item.left and item.right:
+        return
+    if item.pair or any(key in wanted.pairs for key in item.keys):
+        return
+    name = item.source.name
+    seen = dict.fromkeys(text for row in table.rows if (text := item.source.text(row)))
+    by_pair = f", or by --pair {shown(item.keys[0])}=LEFT,RIGHT" if item.keys[0] else ""
+    raise InputError(
+        f"{table.path}: {shown(name)} ({listed(seen)}): nothing says which two modes were compared; tell it "
+        f"by --left COLUMN and --right COLUMN{by_pair}; columns: {table.labels}"
+    )

@@ -1,0 +1,171 @@
+"""What a user says on the command line, as keys of a map."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from data.answers import ANSWERS
+from data.convert.form import Form
+from data.convert.map import LEAVE_OUT, ConversionMap
+from data.convert.map_file import checked_map
+from data.errors import InputError
+
+_WRITTEN = {
+    "--word": f"TEXT=ANSWER, an answer being one of: A, B, equal, none, {', '.join(ANSWERS)}",
+    "--mode": "TEXT=NAME",
+    "--pair": "NAME=LEFT,RIGHT",
+    "--order": "COLUMN=AS_NAMED,EXCHANGED",
+}
+NOBODY = "none"
+"""What is said as ``--participant`` where a file names nobody."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """Options of ``elbowroom convert`` as they were written; empty where nothing was said."""
+
+    participant: str | None = None
+    answer: Sequence[str] = ()
+    question: str | None = None
+    question_column: str | None = None
+    left: str | None = None
+    right: str | None = None
+    pair: Sequence[str] = ()
+    mode: Sequence[str] = ()
+    word: Sequence[str] = ()
+    only: Sequence[str] = ()
+    without: Sequence[str] = ()
+    ranking: Sequence[str] = ()
+    winner: str | None = None
+    levels: int | None = None
+    positive: str | None = None
+    order: str | None = None
+    answer_is: str | None = None
+    leave_out: Sequence[str] = ()
+    keep: Sequence[str] = ()
+    sheet: str | None = None
+
+
+def with_told(form: Form, base: ConversionMap, told: Told) -> ConversionMap:
+    """A form's map, or one from a file, with what the command line says instead or in addition.
+
+    Raises
+    ------
+    InputError
+        One line with the option and how it is written.
+    """
+    content: dict[str, object] = base.model_dump(mode="json", exclude_none=True)
+    content["form"] = form.name
+    if told.participant is not None:
+        content["participant"] = "" if told.participant == NOBODY else told.participant
+    for name in ("sheet", "winner"):
+        if (value := getattr(told, name)) is not None:
+            content[name] = value
+    content["words"] = {**base.words, **_equations("--word", told.word)}
+    content["modes"] = {**base.modes, **_equations("--mode", told.mode)}
+    content["pairs"] = {
+        **base.pairs,
+        **{k: _two("--pair", k, v) for k, v in _equations("--pair", told.pair).items()},
+    }
+    content["rows"] = [*_list(content["rows"]), *_rules(told)]
+    content["keep"] = [*base.keep, *told.keep]
+    content["leave_out"] = [*base.leave_out, *told.leave_out]
+    _check_leave_out(told.leave_out)
+    if told.levels is not None or told.positive is not None:
+        scale = base.scale.model_dump() if base.scale else {}
+        scale |= {"levels": told.levels} if told.levels is not None else {}
+        scale |= {"positive": told.positive} if told.positive is not None else {}
+        if "levels" not in scale:
+            raise InputError(
+                "--positive: needs --levels, the number of levels of the scale, such as 7 for -3 to 3"
+            )
+        content["scale"] = scale
+    rankings = [_ranking(form, text) for text in told.ranking]
+    if rankings:
+        content["rankings"] = rankings
+    answers = _answers(form, base, told, only_rankings=bool(rankings))
+    content["answers"] = answers
+    return checked_map(content, "options")
+
+
+def _answers(form: Form, base: ConversionMap, told: Told, only_rankings: bool) -> list[dict[str, object]]:
+    """The answer columns: those named, or else those of the form or map; what is said of sides is for all."""
+    answers = [
+        answer.model_dump(mode="json", exclude_none=True, exclude_defaults=True) for answer in base.answers
+    ]
+    if told.answer:
+        answers = []
+        for text in told.answer:
+            column, _, question = text.rpartition("=") if "=" in text else (text, "", "")
+            answers.append({**form.answer, "column": column} | ({"question": question} if question else {}))
+    elif only_rankings:
+        answers = []
+    elif not answers and form.answer:
+        answers = [dict(form.answer)]
+    changes: dict[str, object] = {}
+    for name in ("question", "question_column", "left", "right", "answer_is"):
+        if (value := getattr(told, name)) is not None:
+            changes[name] = value
+    if told.order is not None:
+        column, values = next(iter(_equations("--order", [told.order]).items()))
+        as_named, exchanged = _two("--order", column, values)
+        changes["order"] = {"column": column, "as_named": [as_named], "exchanged": [exchanged]}
+    return [{**answer, **changes} for answer in answers]
+
+
+def _ranking(form: Form, text: str) -> dict[str, object]:
+    columns, _, question = text.rpartition("=") if "=" in text else (text, "", "")
+    if not form.ranking_cells:
+        raise InputError(
+            f"--ranking: the form {form.name} does not say whether the cells of {columns} are modes or "
+            "ranks; write [[rankings]] in a map, with columns and cells"
+        )
+    names = [name.strip() for name in columns.split(",")] if not columns.endswith("...") else [columns]
+    ranking: dict[str, object] = {"columns": names, "cells": form.ranking_cells}
+    return ranking | ({"question": question} if question else {})
+
+
+def _rules(told: Told) -> list[dict[str, object]]:
+    """Rules of rows: several values of one column are alternatives."""
+    rules: dict[tuple[str, str], list[str]] = {}
+    for key, texts in (("only", told.only), ("without", told.without)):
+        for text in texts:
+            column, equal, value = text.partition("=")
+            if not equal:
+                raise InputError(f"--{key}: {text!r} is not COLUMN=VALUE")
+            rules.setdefault((column, key), []).append(value)
+    return [{"column": column, key: values} for (column, key), values in rules.items()]
+
+
+def _equations(option: str, texts: Sequence[str]) -> dict[str, str]:
+    """``TEXT=VALUE`` at the last sign, so that a text may hold one; the answer A=B holds one itself."""
+    equations: dict[str, str] = {}
+    for text in texts:
+        name, equal, value = text.rpartition("=")
+        if option == "--word" and text.endswith("=A=B"):
+            name, value = text[: -len("=A=B")], "A=B"
+        if not equal or not name or not value:
+            raise InputError(f"{option}: {text!r} is not {_WRITTEN[option]}")
+        if equations.get(name, value) != value:
+            raise InputError(f"{option}: {name!r} is told twice: {equations[name]!r} and {value!r}")
+        equations[name] = value
+    return equations
+
+
+def _two(option: str, name: str, text: str) -> tuple[str, str]:
+    parts = [part.strip() for part in text.split(",")]
+    if len(parts) != 2 or not all(parts):
+        raise InputError(f"{option}: {name}={text} does not have two parts with a comma between them")
+    return parts[0], parts[1]
+
+
+def _check_leave_out(texts: Sequence[str]) -> None:
+    for text in texts:
+        if text not in LEAVE_OUT and not text.rpartition(":")[2].isdigit():
+            raise InputError(
+                f"--leave-out: {text!r} is neither a line (7, or FILE:7) nor one of: {', '.join(LEAVE_OUT)}"
+            )
+
+
+def _list(value: object) -> list[object]:
+    assert isinstance(value, list)
+    return value
