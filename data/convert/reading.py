@@ -78,9 +78,8 @@ def read_head(path: Path, sheet: str = "") -> Table:
     else:
         lines = records(name, _text(name, content))
     width = len(lines[0].cells) if lines else 0
-    return _tabular(
-        name, [line for line in lines if len(line.cells) == width and not line.has_stray_quote], Layout()
-    )
+    even = [line for line in lines if len(line.cells) == width and not line.has_stray_quote]
+    return _with_file(path, _tabular(name, even, Layout()))
 
 
 def read_tables(paths: Sequence[Path], layout: Layout, sheet: str = "") -> Table:

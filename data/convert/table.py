@@ -10,8 +10,8 @@ from data.errors import InputError
 
 Cell = str | None
 """A cell's text; None where the file has nothing at all, unlike "", which was written."""
-MOST_SHOWN = 12
-"""Values or columns listed in one message."""
+MOST_SHOWN, MOST_COLUMNS = 12, 60
+"""Values, and names of columns to choose from, that are listed in one message."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +55,12 @@ class Table:
     @property
     def labels(self) -> str:
         """The columns as they can be named on the command line."""
-        return listed(
+        labels = [
             name if self.names.count(name) == 1 else f"#{place + 1} {name}"
             for place, name in enumerate(self.names)
             if name
-        )
+        ]
+        return listed(labels, most=MOST_COLUMNS)
 
     def find(self, reference: str) -> "Column | None":
         """The column that a reference means, or None.
@@ -79,10 +80,8 @@ class Table:
         if not places and wanted.endswith("..."):
             places = [place for place, name in enumerate(self.names) if name.startswith(wanted[:-3])]
         if len(places) > 1:
-            listed = ", ".join(f"#{place + 1}" for place in places[:MOST_SHOWN])
-            raise InputError(
-                f"{self.path}: {shown(wanted)}: is the name of several columns; write one: {listed}"
-            )
+            numbers = listed(f"#{place + 1}" for place in places)
+            raise InputError(f"{self.path}: {shown(wanted)}: several columns have that name; write {numbers}")
         if places:
             return Column(wanted, places[0])
         holder, _, keys = wanted.rpartition(".")
@@ -152,11 +151,11 @@ def plain(name: str) -> str:
     return " ".join(name.split())
 
 
-def listed(texts: Iterable[str]) -> str:
-    """Texts on one line, the first `MOST_SHOWN` of them."""
+def listed(texts: Iterable[str], most: int = MOST_SHOWN) -> str:
+    """Texts on one line, the first ``most`` of them."""
     every = [shown(plain(text)) or "(empty)" for text in texts]
-    rest = f" and {len(every) - MOST_SHOWN} more" if len(every) > MOST_SHOWN else ""
-    return ", ".join(every[:MOST_SHOWN]) + rest
+    rest = f" and {len(every) - most} more" if len(every) > most else ""
+    return ", ".join(every[:most]) + rest
 
 
 def counted(number: int, noun: str, plural: str | None = None) -> str:
