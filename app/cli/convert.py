@@ -1,7 +1,7 @@
 """`elbowroom convert`: the forms that people have, to the response CSV."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -64,21 +64,21 @@ def convert(
         _several("--ranking", "COLUMNS[=QUESTION]", "Columns of a ranking, such as 'rank[*]'."),
     ] = [],  # noqa: B006
     winner: Annotated[
-        str | None, typer.Option("--winner", metavar="rows|columns", help="Who won in a matrix of counts.")
+        Literal["rows", "columns"] | None, typer.Option("--winner", help="Who won in a matrix of counts.")
     ] = None,
     levels: Annotated[
         int | None, typer.Option("--levels", min=2, max=9, help="Levels of a scale of numbers around 0.")
     ] = None,
     positive: Annotated[
-        str | None, typer.Option("--positive", metavar="A|B", help="Side that numbers above 0 prefer.")
+        Literal["A", "B"] | None, typer.Option("--positive", help="Side that numbers above 0 prefer.")
     ] = None,
     order: Annotated[
         str | None,
         typer.Option("--order", metavar="COLUMN=AS_NAMED,EXCHANGED", help="Column that says who was left."),
     ] = None,
     answer_is: Annotated[
-        str | None,
-        typer.Option("--answer-is", metavar="button|item", help="What an answer names, if sides changed."),
+        Literal["button", "item"] | None,
+        typer.Option("--answer-is", help="What an answer names, if sides changed."),
     ] = None,
     leave_out: Annotated[
         Texts,

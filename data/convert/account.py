@@ -143,7 +143,8 @@ class Account:
         elif item.pair:
             sides = f"left and right by {item.pair.name}"
         else:
-            left, right = self._wanted.pairs[next(key for key in item.keys if key in self._wanted.pairs)]
+            assert item.modes is not None
+            left, right = item.modes
             sides = f"left {left}, right {right}"
         order = f", exchanged by {item.order.name}" if item.order else ""
         return f"answer to {question}, {sides}{order}"

@@ -12,7 +12,8 @@ from data.convert.table import Cell
 from data.errors import InputError
 
 SEPARATORS = (",", ";", "\t", "|")
-_QUOTED = re.compile(r'"((?:[^"]|"")*+)"')
+_INSIDE = r'[^"]*+(?:""[^"]*+)*+'
+_QUOTED = re.compile(f'"{_INSIDE}"')
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,42 +71,35 @@ def _separator(text: str) -> str:
 
 def _records(path: str, text: str, separator: str, line: int) -> Iterator[Record]:
     at, end = 0, len(text)
-    unquoted = re.compile(rf"[^\n{re.escape(separator)}]*")
+    between = rf"[^\n{re.escape(separator)}]*+"
+    # A quoted cell and what follows its closing mark, or else all up to the next separator or line feed.
+    cell = re.compile(rf'(?:"({_INSIDE})"({between})|({between}))(\n|{re.escape(separator)}|\Z)')
     while at < end:
         stop = text.find("\n", at)
         stop = end if stop < 0 else stop
-        if '"' not in text[at:stop]:
-            if text[at:stop].strip(" "):
-                yield Record(line, tuple(cell or None for cell in text[at:stop].split(separator)))
+        plain = text[at:stop]
+        if '"' not in plain:
+            if plain.strip(" "):
+                yield Record(line, tuple([cell or None for cell in plain.split(separator)]))
             at, line = stop + 1, line + 1
             continue
-        cells, after, is_stray = _quoted_record(path, text, at, separator, unquoted, line)
-        yield Record(line, cells, is_stray)
+        cells: list[Cell] = []
+        has_stray_quote = False
+        after = at
+        for match in cell.finditer(text, at):
+            quoted, tail, unquoted, closes = match.groups()
+            if unquoted is not None:
+                if unquoted.startswith('"'):
+                    raise InputError(f"{path}: line {line}: a quotation mark is opened and never closed")
+                cells.append(unquoted or None)
+            else:
+                if tail:
+                    has_stray_quote = has_stray_quote or bool(tail.strip())
+                    quoted += tail.rstrip()
+                cells.append(quoted.replace('""', '"') if '"' in quoted else quoted)
+            if closes != separator:
+                after = match.end()
+                break
+        yield Record(line, tuple(cells), has_stray_quote)
         line += text.count("\n", at, after)
         at = after
-
-
-def _quoted_record(
-    path: str, text: str, at: int, separator: str, unquoted: re.Pattern[str], line: int
-) -> tuple[tuple[Cell, ...], int, bool]:
-    """The cells of a record with quotation marks, where the next one begins, and whether one is stray."""
-    cells: list[Cell] = []
-    stray = False
-    while True:
-        cell: Cell
-        if text.startswith('"', at):
-            match = _QUOTED.match(text, at)
-            if match is None:
-                raise InputError(f"{path}: line {line}: a quotation mark is opened and never closed")
-            tail = unquoted.match(text, match.end())
-            assert tail is not None
-            stray = stray or bool(tail[0].strip())
-            cell, at = match[1].replace('""', '"') + tail[0].rstrip(), tail.end()
-        else:
-            match = unquoted.match(text, at)
-            assert match is not None
-            cell, at = match[0] or None, match.end()
-        cells.append(cell)
-        if not text.startswith(separator, at):
-            return tuple(cells), at + 1, stray
-        at += 1

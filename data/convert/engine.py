@@ -91,6 +91,7 @@ class _Reader:
         self.comparison = self.table.column(self.wanted.comparison) if self.wanted.comparison else None
         self.kept_columns = [self.table.column(name) for name in self.wanted.keep]
         self.untold = Untold(self.table, kept, self.items)
+        self._is_one_file = len({row.path for row in self.table.rows}) <= 1
         self._file_place = self.table.names.index(FILE) if FILE in self.table.names else -1
         self._rows: dict[tuple[str | None, ...], Row] = {}
         self._keys: dict[tuple[str | None, str, str], Row] = {}
@@ -109,7 +110,7 @@ class _Reader:
         What has to be told is said before any other fault, and all of it that is of one kind at once.
         """
         responses: list[ConvertedResponse] = []
-        problems: list[InputError] = []
+        problem: InputError | None = None
         for row in self.table.rows:
             rule = next((rule for rule in self.rules if rule.fires(row) and not rule.rule.taken), None)
             if rule is not None:
@@ -119,11 +120,11 @@ class _Reader:
             else:
                 try:
                     responses += self._responses(row)
-                except InputError as problem:
-                    problems.append(problem)
+                except InputError as error:
+                    problem = problem or error
         self.untold.check()
-        if problems:
-            raise problems[0]
+        if problem is not None:
+            raise problem
         if self.wanted.each_pair_once:
             responses = self._each_pair_once(responses)
         self._count_arrays(responses)
@@ -149,6 +150,8 @@ class _Reader:
         self.account.row_left_out(reason, row, answers)
 
     def _is_asked_away(self, row: Row) -> bool:
+        if not self.wanted.leave_out:
+            return False
         places = (str(row.line), f"{row.path}:{row.line}", f"{Path(row.path).name}:{row.line}")
         return any(place in self.wanted.leave_out for place in places)
 
@@ -187,6 +190,8 @@ class _Reader:
 
     def _repeats_another_file(self, row: Row) -> bool:
         """Whether a row is to be left out because another file has it, cell by cell."""
+        if self._is_one_file:
+            return False
         cells = tuple(cell for place, cell in enumerate(row.cells) if place != self._file_place)
         first = self._rows.setdefault(cells, row)
         if first.path == row.path:

@@ -14,6 +14,10 @@ class Item:
 
     Attributes
     ----------
+    source : Column
+        The column that an answer is read from, for messages.
+    modes : tuple of str, optional
+        The pair where it is the same in all rows.
     keys : tuple of str
         Under which the item's pair may stand in the map, the first that is there.
     comparison : str
@@ -21,6 +25,7 @@ class Item:
     """
 
     spec: AnswerColumn
+    source: Column
     answer: Column | None
     left: Column | None
     right: Column | None
@@ -32,14 +37,7 @@ class Item:
     one_of: tuple[tuple[Column, str], ...]
     keys: tuple[str, ...]
     comparison: str = ""
-
-    @property
-    def source(self) -> Column:
-        """The column that an answer is read from, for messages."""
-        columns = (self.answer, self.chosen, self.left, self.right, self.pair)
-        first = self.one_of[0][0] if self.one_of else next((column for column in columns if column), None)
-        assert first is not None
-        return first
+    modes: tuple[str, str] | None = None
 
     @property
     def used(self) -> list[Column]:
@@ -56,11 +54,11 @@ def resolve_items(table: Table, wanted: ConversionMap) -> list[Item]:
     InputError
         If a column is missing or nothing says what was on the two sides.
     """
-    items = [item for spec in wanted.answers for item in _expanded(table, spec)]
+    items = [item for spec in wanted.answers for item in _expanded(table, spec, wanted)]
     if len({(spec.left, spec.right, spec.pair) for spec in wanted.answers}) > 1:
         items = [_named(item) for item in items]
     for item in items:
-        _check_sides(table, item, wanted)
+        _check_sides(table, item)
     return sorted(items, key=lambda item: item.source.place)
 
 
@@ -69,11 +67,13 @@ def _named(item: Item) -> Item:
     return Item(**{**vars(item), "comparison": item.source.name if item.comparison else ""})
 
 
-def _expanded(table: Table, spec: AnswerColumn) -> list[Item]:
+def _expanded(table: Table, spec: AnswerColumn, wanted: ConversionMap) -> list[Item]:
     pattern = spec.column or next((name for name in (spec.chosen, spec.left) if "*" in name), "")
     if "*" not in pattern or table.find(pattern):
         is_one_of_several = bool(spec.column) and not spec.pair and "*" in spec.left
-        return [_item(table, spec, spec.column, (plain(spec.column), spec.question), is_one_of_several)]
+        return [
+            _item(table, spec, wanted, spec.column, (plain(spec.column), spec.question), is_one_of_several)
+        ]
     numbers = table.matches(pattern)
     if not numbers:
         raise InputError(
@@ -84,36 +84,47 @@ def _expanded(table: Table, spec: AnswerColumn) -> list[Item]:
     for number in numbers:
         column = plain(pattern).replace("*", number)
         keys = (number, column, plain(pattern))
-        items.append(_item(table, spec, number, keys, is_one_of_several=True))
+        items.append(_item(table, spec, wanted, number, keys, is_one_of_several=True))
     return items
 
 
 def _item(
-    table: Table, spec: AnswerColumn, star: str, keys: tuple[str, ...], is_one_of_several: bool
+    table: Table,
+    spec: AnswerColumn,
+    wanted: ConversionMap,
+    star: str,
+    keys: tuple[str, ...],
+    is_one_of_several: bool,
 ) -> Item:
     def column(reference: str) -> Column | None:
         return table.column(reference.replace("*", star)) if reference else None
 
+    answer, chosen, left = column(spec.column), column(spec.chosen), column(spec.left)
+    one_of = tuple((table.column(name.replace("*", star)), word) for name, word in spec.one_of.items())
+    pair = column(spec.pair)
+    source = one_of[0][0] if one_of else answer or chosen or left or pair
+    if source is None:
+        raise InputError(f"{table.path}: an entry of answers in the map names no column")
     return Item(
         spec=spec,
-        answer=column(spec.column),
-        left=column(spec.left),
+        source=source,
+        answer=answer,
+        left=left,
         right=column(spec.right),
-        pair=column(spec.pair),
-        chosen=column(spec.chosen),
+        pair=pair,
+        chosen=chosen,
         question=column(spec.question_column),
         order=column(spec.order.column) if spec.order else None,
         other=column(spec.other),
-        one_of=tuple((table.column(name.replace("*", star)), word) for name, word in spec.one_of.items()),
+        one_of=one_of,
         keys=keys,
         comparison=star if is_one_of_several else "",
+        modes=next((wanted.pairs[key] for key in keys if key in wanted.pairs), None),
     )
 
 
-def _check_sides(table: Table, item: Item, wanted: ConversionMap) -> None:
-    if item.left and item.right:
-        return
-    if item.pair or any(key in wanted.pairs for key in item.keys):
+def _check_sides(table: Table, item: Item) -> None:
+    if (item.left and item.right) or item.pair or item.modes:
         return
     name = item.source.name
     seen = dict.fromkeys(text for row in table.rows if (text := item.source.text(row)))

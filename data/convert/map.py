@@ -24,7 +24,8 @@ def reason_of_none(word: str) -> str | None:
     return None if match is None else match["reason"] or "not an answer"
 
 
-def _word(text: str) -> str:
+def known_word(text: str) -> str:
+    """What a word may mean, or a ValueError with all that it may."""
     if text in SIDES or text in ANSWERS or text == CHOSEN or reason_of_none(text) is not None:
         return text
     raise ValueError(f"{text!r} is not one of: {', '.join([*SIDES, 'none', CHOSEN, *ANSWERS])}")
@@ -36,7 +37,7 @@ def _left_out(text: str) -> str:
     raise ValueError(f"{text!r} is neither a line nor one of: {', '.join(LEAVE_OUT)}")
 
 
-Word = Annotated[str, AfterValidator(_word)]
+Word = Annotated[str, AfterValidator(known_word)]
 LeftOut = Annotated[str, AfterValidator(_left_out)]
 
 

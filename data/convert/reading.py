@@ -126,7 +126,8 @@ def _tabular(path: str, lines: list[Record], layout: Layout) -> Table:
     for record in lines:
         if len(record.cells) != width or record.has_stray_quote:
             raise _uneven(path, record, width)
-    rows = tuple(Row(path, record.line, record.cells) for record in lines[header.records :])
+    filled = [record for record in lines[header.records :] if any(record.cells)]
+    rows = tuple(Row(path, record.line, record.cells) for record in filled)
     return Table(path, tuple(map(plain, header.names)), rows, notes)
 
 

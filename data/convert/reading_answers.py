@@ -202,7 +202,8 @@ def _modes(item: Item, row: Row, wanted: ConversionMap) -> tuple[str, str]:
         if key not in wanted.pairs:
             raise UntoldError("pair", item.pair.name, key)
         return wanted.pairs[key]
-    return wanted.pairs[next(key for key in item.keys if key in wanted.pairs)]
+    assert item.modes is not None
+    return item.modes
 
 
 def _mode(column: Column, row: Row, wanted: ConversionMap, must_be_renamed: bool) -> str:

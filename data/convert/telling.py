@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from data.answers import ANSWERS
 from data.convert.form import Form
-from data.convert.map import LEAVE_OUT, ConversionMap
+from data.convert.map import LEAVE_OUT, ConversionMap, known_word
 from data.convert.map_file import checked_map
 from data.errors import InputError
 
@@ -60,7 +60,7 @@ def with_told(form: Form, base: ConversionMap, told: Told) -> ConversionMap:
     for name in ("sheet", "winner"):
         if (value := getattr(told, name)) is not None:
             content[name] = value
-    content["words"] = {**base.words, **_equations("--word", told.word)}
+    content["words"] = {**base.words, **_words(told.word)}
     content["modes"] = {**base.modes, **_equations("--mode", told.mode)}
     content["pairs"] = {
         **base.pairs,
@@ -149,6 +149,14 @@ def _equations(option: str, texts: Sequence[str]) -> dict[str, str]:
             raise InputError(f"{option}: {name!r} is told twice: {equations[name]!r} and {value!r}")
         equations[name] = value
     return equations
+
+
+def _words(texts: Sequence[str]) -> dict[str, str]:
+    words = _equations("--word", texts)
+    try:
+        return {text: known_word(meaning) for text, meaning in words.items()}
+    except ValueError as error:
+        raise InputError(f"--word: {error}") from None
 
 
 def _two(option: str, name: str, text: str) -> tuple[str, str]:

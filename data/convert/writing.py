@@ -40,6 +40,7 @@ def response_csv(conversion: Conversion) -> str:
         "file": len({response.row.path for response in responses}) > 1,
     }
     names = [name for name in _OWN if has.get(name, True)]
+    files = {path: _file(conversion, path) for path in {response.row.path for response in responses}}
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([*names, *kept])
@@ -54,7 +55,7 @@ def response_csv(conversion: Conversion) -> str:
             "response": preference.response,
             "count": response.count,
             "sides": "known" if preference.is_side_known else "unknown",
-            "file": _file(conversion, response.row.path),
+            "file": files[response.row.path],
             "line": str(response.row.line),
         }
         writer.writerow([*(cells[name] for name in names), *response.kept])

@@ -97,17 +97,8 @@ def test_the_written_map_gives_the_same_bytes(case: Case, tmp_path: Path) -> Non
     out, again, kept = tmp_path / "responses.csv", tmp_path / "again.csv", tmp_path / "map.toml"
     assert run([*case.arguments(case.told, out), "--write-map", str(kept)]) == 0
     rewritten = tmp_path / "again.toml"
-    arguments = [
-        "convert",
-        *case.paths,
-        "--map",
-        str(kept),
-        "--out",
-        str(again),
-        "--write-map",
-        str(rewritten),
-    ]
-    assert run(arguments) == 0
+    arguments = ["--map", str(kept), "--out", str(again), "--write-map", str(rewritten)]
+    assert run(["convert", *case.paths, *arguments]) == 0
     assert again.read_bytes() == out.read_bytes()
     assert rewritten.read_bytes() == kept.read_bytes()
 
