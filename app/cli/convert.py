@@ -7,11 +7,8 @@ import typer
 
 from data.errors import InputError
 
-Texts = list[str]
-
-
-def _several(option: str, metavar: str, text: str) -> typer.models.OptionInfo:
-    return typer.Option(option, metavar=metavar, help=text)
+Texts = list[str] | None
+"""What may be repeated."""
 
 
 def convert(
@@ -24,83 +21,140 @@ def convert(
         Path | None, typer.Option("--out", metavar="FILE.csv", help="Response CSV to write.")
     ] = None,
     map_: Annotated[
-        Path | None, typer.Option("--map", metavar="MAP.toml", help="What the columns mean, written before.")
+        Path | None,
+        typer.Option("--map", metavar="MAP.toml", help="What the columns mean, as written by --write-map."),
     ] = None,
     write_map: Annotated[
         Path | None,
-        typer.Option("--write-map", metavar="MAP.toml", help="Keep what was said, to use again."),
+        typer.Option("--write-map", metavar="MAP.toml", help="Write all that these options say, for --map."),
     ] = None,
     participant: Annotated[
         str | None,
         typer.Option("--participant", metavar="COLUMN", help="Who answered; none: the file names nobody."),
     ] = None,
     answer: Annotated[
-        Texts, _several("--answer", "COLUMN[=QUESTION]", "An answer; * in it is a whole number. Repeatable.")
-    ] = [],  # noqa: B006
-    question: Annotated[str | None, typer.Option("--question", metavar="NAME", help="Its name.")] = None,
+        Texts,
+        typer.Option(
+            "--answer",
+            metavar="COLUMN[=QUESTION]",
+            help="A column of answers; * in its name is a whole number. Can be repeated.",
+        ),
+    ] = None,
+    question: Annotated[
+        str | None, typer.Option("--question", metavar="NAME", help="What the question is called.")
+    ] = None,
     question_column: Annotated[
         str | None,
-        typer.Option("--question-column", metavar="COLUMN", help="Column with the question."),
+        typer.Option("--question-column", metavar="COLUMN", help="Column that names the question."),
     ] = None,
     left: Annotated[
         str | None,
-        typer.Option("--left", metavar="COLUMN", help="Mode shown as A; * is what it is in --answer."),
+        typer.Option(
+            "--left",
+            metavar="COLUMN",
+            help="Column with the mode shown as A; * in it is the number in --answer, or that column's name.",
+        ),
     ] = None,
-    right: Annotated[str | None, typer.Option("--right", metavar="COLUMN", help="Mode shown as B.")] = None,
+    right: Annotated[
+        str | None, typer.Option("--right", metavar="COLUMN", help="Column with the mode shown as B.")
+    ] = None,
     pair: Annotated[
-        Texts, _several("--pair", "NAME=LEFT,RIGHT", "Modes of an answer column, number or pair. Repeatable.")
-    ] = [],  # noqa: B006
-    mode: Annotated[Texts, _several("--mode", "TEXT=NAME", "Another name of a mode. Repeatable.")] = [],  # noqa: B006
+        Texts,
+        typer.Option(
+            "--pair",
+            metavar="NAME=LEFT,RIGHT",
+            help="The two modes behind an answer column, its number or the name of a pair. Can be repeated.",
+        ),
+    ] = None,
+    mode: Annotated[
+        Texts, typer.Option("--mode", metavar="TEXT=NAME", help="What a mode is called. Can be repeated.")
+    ] = None,
     word: Annotated[
         Texts,
-        _several("--word", "TEXT=ANSWER", "ANSWER: A (left), B, equal, none or such as A>>B. Repeatable."),
-    ] = [],  # noqa: B006
+        typer.Option(
+            "--word",
+            metavar="TEXT=ANSWER",
+            help="What a word or code means: A (left preferred), B, equal, none, or an answer such as A>>B. "
+            "Can be repeated.",
+        ),
+    ] = None,
     only: Annotated[
-        Texts, _several("--only", "COLUMN=VALUE", "Rows that count. Several of a column: any. Repeatable.")
-    ] = [],  # noqa: B006
-    without: Annotated[Texts, _several("--without", "COLUMN=VALUE", "Rows to leave out.")] = [],  # noqa: B006
+        Texts,
+        typer.Option(
+            "--only",
+            metavar="COLUMN=VALUE",
+            help="Rows that count; several values of one column are alternatives. Can be repeated.",
+        ),
+    ] = None,
+    without: Annotated[
+        Texts, typer.Option("--without", metavar="COLUMN=VALUE", help="Rows to leave out. Can be repeated.")
+    ] = None,
     ranking: Annotated[
         Texts,
-        _several("--ranking", "COLUMNS[=QUESTION]", "Columns of a ranking, such as 'rank[*]'."),
-    ] = [],  # noqa: B006
+        typer.Option(
+            "--ranking",
+            metavar="COLUMNS[=QUESTION]",
+            help="Columns of a ranking, such as 'rank[*]'. Can be repeated.",
+        ),
+    ] = None,
     winner: Annotated[
-        Literal["rows", "columns"] | None, typer.Option("--winner", help="Who won in a matrix of counts.")
+        Literal["rows", "columns"] | None,
+        typer.Option("--winner", help="Who was preferred in the cells of a matrix of counts."),
     ] = None,
     levels: Annotated[
-        int | None, typer.Option("--levels", min=2, max=9, help="Levels of a scale of numbers around 0.")
+        int | None,
+        typer.Option("--levels", min=2, max=9, help="Levels of a scale of numbers around 0: 7 for -3 to 3."),
     ] = None,
     positive: Annotated[
-        Literal["A", "B"] | None, typer.Option("--positive", help="Side that numbers above 0 prefer.")
+        Literal["A", "B"] | None, typer.Option("--positive", help="Which side a number above 0 prefers.")
     ] = None,
     order: Annotated[
         str | None,
-        typer.Option("--order", metavar="COLUMN=AS_NAMED,EXCHANGED", help="Column that says who was left."),
+        typer.Option(
+            "--order",
+            metavar="COLUMN=AS_NAMED,EXCHANGED",
+            help="Column that says whether left and right were exchanged, and its two values.",
+        ),
     ] = None,
     answer_is: Annotated[
         Literal["button", "item"] | None,
-        typer.Option("--answer-is", help="What an answer names, if sides changed."),
+        typer.Option("--answer-is", help="What an answer names where left and right were exchanged."),
     ] = None,
     leave_out: Annotated[
         Texts,
-        _several(
-            "--leave-out", "LINE|KIND", "A line; contradictions, off-scale, repeated, same-mode. Repeatable."
+        typer.Option(
+            "--leave-out",
+            metavar="LINE|KIND",
+            help="A line, or what is refused otherwise: contradictions, off-scale, repeated, same-mode. "
+            "Can be repeated.",
         ),
-    ] = [],  # noqa: B006
-    keep: Annotated[Texts, _several("--keep", "COLUMN", "A further column to keep.")] = [],  # noqa: B006
-    sheet: Annotated[str | None, typer.Option("--sheet", metavar="NAME", help="Of a spreadsheet.")] = None,
+    ] = None,
+    keep: Annotated[
+        Texts, typer.Option("--keep", metavar="COLUMN", help="A further column to keep. Can be repeated.")
+    ] = None,
+    sheet: Annotated[
+        str | None, typer.Option("--sheet", metavar="NAME", help="Which sheet of a spreadsheet.")
+    ] = None,
 ) -> None:
-    """Convert answers in the form in which they were exported to the response CSV.
+    """Convert exported answers to the response CSV.
 
-    Nothing is guessed: what a file cannot say has to be told. How each column was read, and which rows were
-    left out, is printed. Forms, with an example each: data/convert/README.md.
+    Nothing is guessed: what a file does not say has to be told. How each column was read, and which rows were
+    left out and why, is printed. All forms, with an example each: data/convert/README.md.
 
-    Example: elbowroom convert survey.csv --from limesurvey --pair pair1=M1,M2 --answer pair1 --word A1=A
+    Example: elbowroom convert survey.csv --from limesurvey --answer pair1 --pair pair1=M1,M2 --word A1=A
     --word A2=B --out responses.csv
     """
-    from data.convert import convert as converted
-    from data.convert import find_form, map_text, merged, read_map, response_csv
+    from data.convert import (
+        ConvertOptions,
+        convert_files,
+        find_form,
+        map_text,
+        merged,
+        read_map,
+        response_csv,
+        with_options,
+    )
     from data.convert.table import counted
-    from data.convert.telling import Told, with_told
     from data.locations import atomic_write
 
     if form == "look":
@@ -115,51 +169,49 @@ def convert(
         raise InputError(f"{map_}: is for the form {content['form']}, not for {name}")
     if out is None:
         raise InputError("say where to write the responses: --out FILE.csv")
+    _check_places(files, [place for place in (out, write_map) if place])
     base = merged(preset.defaults, content, str(map_)) if map_ else preset.defaults
-    told = Told(
+    options = ConvertOptions(
         participant=participant,
-        answer=answer,
+        answer=answer or (),
         question=question,
         question_column=question_column,
         left=left,
         right=right,
-        pair=pair,
-        mode=mode,
-        word=word,
-        only=only,
-        without=without,
-        ranking=ranking,
+        pair=pair or (),
+        mode=mode or (),
+        word=word or (),
+        only=only or (),
+        without=without or (),
+        ranking=ranking or (),
         winner=winner,
         levels=levels,
         positive=positive,
         order=order,
         answer_is=answer_is,
-        leave_out=leave_out,
-        keep=keep,
+        leave_out=leave_out or (),
+        keep=keep or (),
         sheet=sheet,
     )
-    wanted = with_told(preset, base, told)
-    _check_places(files, [place for place in (out, write_map) if place])
-    result = converted(files, preset, wanted)
-    text = response_csv(result)
+    mapping = with_options(preset, base, options)
+    conversion = convert_files(files, preset, mapping)
+    text = response_csv(conversion)
     if write_map:
-        atomic_write(write_map, map_text(wanted, preset.defaults).encode())
+        atomic_write(write_map, map_text(mapping, preset.defaults).encode())
     atomic_write(out, text.encode())
-    print(f"{result.table.path}: {preset.title}")
-    for line in result.account.lines([response.preference for response in result.responses]):
+    print(f"{conversion.table.path}: {preset.title}")
+    for line in conversion.account.lines([response.preference for response in conversion.responses]):
         print(f"  {_printable(line)}")
-    print(f"{out}: {counted(len(result.responses), 'response')}")
+    print(f"{out}: {counted(len(conversion.responses), 'response')}")
 
 
 def _printable(line: str) -> str:
     """A line without what could control a terminal: texts in it are from the file."""
-    return "".join(
-        character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in line
-    )
+    return "".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in line)
 
 
 def _check_places(files: list[Path], places: list[Path]) -> None:
-    """Refuse to write over a file that is read."""
+    """Refuse to write over a file that is read, or over a folder."""
     for place in places:
         if any(place.exists() and file.exists() and place.samefile(file) for file in files):
             raise InputError(f"{place}: is the file to be converted; write somewhere else")
@@ -170,17 +222,16 @@ def _check_places(files: list[Path], places: list[Path]) -> None:
 def _look(files: list[Path], sheet: str | None) -> None:
     """Say what each file seems to be, and what has to be told about it."""
     from data.convert import forms, look
-    from data.convert.table import listed
 
     for file in files:
         fits, table = look(file, sheet or "")
-        names = listed(name for name in table.names if name and not name.startswith("@"))
+        columns = _printable(table.labels)
         if not fits:
-            print(f"{file}: not known by its columns ({names}): convert it by --from table")
+            print(f"{file}: not known by its columns ({columns}): convert it by --from table")
             print(f"  forms: {', '.join(forms())}")
         for form in fits:
-            print(f"{file}: seems to be {form.title} (--from {form.name}); columns: {names}")
+            print(f"{file}: seems to be {form.title} (--from {form.name}); columns: {columns}")
             if form.refusal:
                 print(f"  {form.refusal}")
-            elif form.tell:
+            else:
                 print(f"  to be told: {form.tell}")

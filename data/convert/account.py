@@ -13,7 +13,7 @@ from data.csv_file import shown
 
 
 @dataclass
-class _Left:
+class _Tally:
     rows: int = 0
     answers: int = 0
     column: str = ""
@@ -39,15 +39,15 @@ class Account:
     def __init__(
         self,
         table: Table,
-        wanted: ConversionMap,
+        mapping: ConversionMap,
         items: tuple[Item, ...],
         rankings: tuple[ResolvedRanking, ...],
     ) -> None:
-        self._table, self._wanted = table, wanted
+        self._table, self._mapping = table, mapping
         self._items, self._rankings = items, rankings
-        self._rows: dict[str, _Left] = {}
-        self._answers: dict[str, _Left] = {}
-        self._taken: dict[str, _Left] = {}
+        self._rows: dict[str, _Tally] = {}
+        self._answers: dict[str, _Tally] = {}
+        self._taken: dict[str, _Tally] = {}
         self._notes: list[str] = list(table.notes)
 
     def row_left_out(self, reason: Reason, row: Row, answers: int, who: str = "") -> None:
@@ -63,16 +63,16 @@ class Account:
         column = f" in {shown(outcome.column)}" if outcome.column else ""
         self._add(self._answers, Reason(f"{column}: {outcome.reason}"), row, 1, who)
 
-    def _add(self, lefts: dict[str, _Left], reason: Reason, row: Row, answers: int, who: str = "") -> None:
-        left = lefts.setdefault(reason.text, _Left(column=reason.column, per_column=reason.per_column))
-        left.rows += 1
-        left.answers += answers
-        left.values[reason.value] = None
+    def _add(self, tallies: dict[str, _Tally], reason: Reason, row: Row, answers: int, who: str = "") -> None:
+        tally = tallies.setdefault(reason.text, _Tally(column=reason.column, per_column=reason.per_column))
+        tally.rows += 1
+        tally.answers += answers
+        tally.values[reason.value] = None
         if reason.per_value is not None:
-            left.per.add(reason.per_value)
+            tally.per.add(reason.per_value)
         inside = row.path.removeprefix(f"{self._table.path}/")
         place = f"{row.line}" if row.path == self._table.path else f"{inside}:{row.line}"
-        left.places.append(f"{place}{who}")
+        tally.places.append(f"{place}{who}")
 
     def note(self, text: str) -> None:
         """Add a line of its own."""
@@ -81,19 +81,21 @@ class Account:
     def left_out_lines(self) -> list[str]:
         """A line a reason, rows first."""
         lines = []
-        for reason, left in self._rows.items():
-            rows = counted(left.rows, "row") + (f" of {len(left.per)} {left.per_column}" if left.per else "")
-            answers = f" with {counted(left.answers, 'answer')}" if left.answers else ""
-            lines.append(f"left out: {rows}{answers}: {reason}{left.condition}; {left.lines}")
-        for reason, left in self._answers.items():
-            lines.append(f"no answer: {left.answers}{reason}; {left.lines}")
-        for reason, left in self._taken.items():
-            answers = counted(left.answers, "answer")
-            lines.append(f"taken all the same: {answers}: {reason}{left.condition}; {left.lines}")
+        for reason, tally in self._rows.items():
+            rows = counted(tally.rows, "row") + (
+                f" of {len(tally.per)} {tally.per_column}" if tally.per else ""
+            )
+            answers = f" with {counted(tally.answers, 'answer')}" if tally.answers else ""
+            lines.append(f"left out: {rows}{answers}: {reason}{tally.condition}; {tally.lines}")
+        for reason, tally in self._answers.items():
+            lines.append(f"no answer: {tally.answers}{reason}; {tally.lines}")
+        for reason, tally in self._taken.items():
+            answers = counted(tally.answers, "answer")
+            lines.append(f"taken all the same: {answers}: {reason}{tally.condition}; {tally.lines}")
         return lines
 
     def lines(self, preferences: list[Preference]) -> list[str]:
-        """All that is to be said about a conversion."""
+        """All lines about a conversion."""
         return [
             *self._column_lines(preferences),
             *self.left_out_lines(),
@@ -104,9 +106,9 @@ class Account:
         ]
 
     def _column_lines(self, preferences: list[Preference]) -> list[str]:
-        wanted = self._wanted
+        mapping = self._mapping
         lines = [
-            f"{wanted.participant}: participant" if wanted.participant else "participant: nobody is named"
+            f"{mapping.participant}: participant" if mapping.participant else "participant: nobody is named"
         ]
         words: dict[str, Counter[tuple[str, str]]] = {}
         for preference in preferences:
@@ -119,13 +121,13 @@ class Account:
             columns = listed(column.name for column in ranking.columns)
             modes = listed(ranking.modes)
             lines.append(f"{columns}: ranking of {modes}, as question {ranking.spec.question}")
-        for role, name in (("count", wanted.count), ("comparison", wanted.comparison)):
+        for role, name in (("count", mapping.count), ("comparison", mapping.comparison)):
             if name:
                 lines.append(f"{name}: {role}")
         used = {column.place for item in self._items for column in item.used}
         used |= {column.place for ranking in self._rankings for column in ranking.columns}
-        names = {wanted.participant, wanted.count, wanted.comparison, *wanted.keep}
-        names |= {rule.column for rule in wanted.rows}
+        names = {mapping.participant, mapping.count, mapping.comparison, *mapping.keep}
+        names |= {rule.column for rule in mapping.rows}
         rest = [
             name
             for place, name in enumerate(self._table.names)
@@ -151,9 +153,9 @@ class Account:
 
     def _unused_lines(self, preferences: list[Preference]) -> list[str]:
         """Words of the user's that do not occur: perhaps a misspelling."""
-        told = [word for word, meaning in self._wanted.words.items() if not meaning.startswith("none")]
+        words = [word for word, meaning in self._mapping.words.items() if not meaning.startswith("none")]
         seen = {preference.word for preference in preferences}
-        rest = [word for word in told if word not in seen]
+        rest = [word for word in words if word not in seen]
         return [f"not in the file: the words {listed(rest)}"] if rest else []
 
     def _side_lines(self, preferences: list[Preference]) -> list[str]:
@@ -166,7 +168,7 @@ class Account:
             )
         if self._rankings:
             lines.append("pairs of one ranking are not independent: intervals from them are too narrow")
-        scale = self._wanted.scale
+        scale = self._mapping.scale
         if scale and (scale.levels % 2 == 0 or scale.levels > 5):
             lines.append(f"a scale of {scale.levels} levels: report it with --levels {scale.levels}")
         return lines

@@ -10,12 +10,12 @@ from data.convert.form import Form
 from data.convert.items import Item, resolve_items
 from data.convert.json_records import ARRAY
 from data.convert.map import ConversionMap
+from data.convert.missing import MissingMeanings
 from data.convert.rankings import ResolvedRanking, read_ranking, resolve_rankings
 from data.convert.reading import FILE, read_tables
-from data.convert.reading_answers import NoAnswer, Preference, RowProblem, UntoldError, read_item
+from data.convert.reading_answers import MissingMeaningError, NoAnswer, Preference, RowProblem, read_item
 from data.convert.rows import Reason, check_rows_are_chosen, filled_down, resolve_rules
 from data.convert.table import Column, Row, Table, counted
-from data.convert.untold import Untold
 from data.csv_file import shown
 from data.errors import InputError
 
@@ -41,14 +41,14 @@ class Conversion:
     map: ConversionMap
 
 
-def convert(paths: Sequence[Path], form: Form, wanted: ConversionMap) -> Conversion:
+def convert_files(paths: Sequence[Path], form: Form, mapping: ConversionMap) -> Conversion:
     """Convert files of one form.
 
     Parameters
     ----------
     paths : sequence of Path
     form : Form
-    wanted : ConversionMap
+    mapping : ConversionMap
         The form's defaults with what the user said.
 
     Raises
@@ -57,15 +57,15 @@ def convert(paths: Sequence[Path], form: Form, wanted: ConversionMap) -> Convers
         One line: what is wrong with the file, or what has to be told: the column, the values seen in it and
         the option.
     """
-    table = filled_down(form.prepare(read_tables(paths, form.layout, wanted.sheet), wanted), wanted)
+    table = filled_down(form.prepare(read_tables(paths, form.layout, mapping.sheet), mapping), mapping)
     if form.refusal:
         raise InputError(f"{table.path}: {form.refusal}")
-    if not wanted.answers and not wanted.rankings:
+    if not mapping.answers and not mapping.rankings:
         raise InputError(
             f"{table.path}: nothing says which column holds the answers; tell it by --answer COLUMN; "
             f"columns: {table.labels}"
         )
-    return _Reader(table, form, wanted).conversion()
+    return _Reader(table, form, mapping).conversion()
 
 
 @dataclass
@@ -74,35 +74,35 @@ class _Reader:
 
     table: Table
     form: Form
-    wanted: ConversionMap
-    untold: Untold = field(init=False)
+    mapping: ConversionMap
+    missing: MissingMeanings = field(init=False)
 
     def __post_init__(self) -> None:
-        self.rules = resolve_rules(self.table, self.wanted)
-        self.items: list[Item] = resolve_items(self.table, self.wanted)
-        self.rankings: list[ResolvedRanking] = resolve_rankings(self.table, self.wanted)
+        self.rules = resolve_rules(self.table, self.mapping)
+        self.items: list[Item] = resolve_items(self.table, self.mapping)
+        self.rankings: list[ResolvedRanking] = resolve_rankings(self.table, self.mapping)
         self.parts: tuple[Item | ResolvedRanking, ...] = (*self.items, *self.rankings)
-        self.account = Account(self.table, self.wanted, tuple(self.items), tuple(self.rankings))
+        self.account = Account(self.table, self.mapping, tuple(self.items), tuple(self.rankings))
         left_out = [rule for rule in self.rules if not rule.rule.taken]
         kept = [row for row in self.table.rows if not any(rule.fires(row) for rule in left_out)]
-        check_rows_are_chosen(self.table, kept, self.form, self.wanted)
+        check_rows_are_chosen(self.table, kept, self.form, self.mapping)
         self.participant = self._participant()
-        self.count = self.table.column(self.wanted.count) if self.wanted.count else None
-        self.comparison = self.table.column(self.wanted.comparison) if self.wanted.comparison else None
-        self.kept_columns = [self.table.column(name) for name in self.wanted.keep]
-        self.untold = Untold(self.table, kept, self.items)
+        self.count = self.table.column(self.mapping.count) if self.mapping.count else None
+        self.comparison = self.table.column(self.mapping.comparison) if self.mapping.comparison else None
+        self.kept_columns = [self.table.column(name) for name in self.mapping.keep]
+        self.missing = MissingMeanings(self.table, kept, self.items)
         self._is_one_file = len({row.path for row in self.table.rows}) <= 1
         self._file_place = self.table.names.index(FILE) if FILE in self.table.names else -1
         self._rows: dict[tuple[str | None, ...], Row] = {}
         self._keys: dict[tuple[str | None, str, str], Row] = {}
 
     def _participant(self) -> Column | None:
-        if self.wanted.participant is None:
+        if self.mapping.participant is None:
             raise InputError(
                 f"{self.table.path}: nothing says which column names the person who answered; "
                 f"tell it by --participant COLUMN, or --participant none; columns: {self.table.labels}"
             )
-        return self.table.column(self.wanted.participant) if self.wanted.participant else None
+        return self.table.column(self.mapping.participant) if self.mapping.participant else None
 
     def conversion(self) -> Conversion:
         """Read every row.
@@ -122,38 +122,38 @@ class _Reader:
                     responses += self._responses(row)
                 except InputError as error:
                     problem = problem or error
-        self.untold.check()
+        self.missing.check()
         if problem is not None:
             raise problem
-        if self.wanted.each_pair_once:
+        if self.mapping.each_pair_once:
             responses = self._each_pair_once(responses)
         self._count_arrays(responses)
         if self.participant and len(responses) > 1 and len({r.participant for r in responses}) == 1:
             self.account.note(f"one participant alone: {self.participant.name} is {responses[0].participant}")
         if not responses:
             raise InputError(f"{self.table.path}: no row counts: {'; '.join(self.account.left_out_lines())}")
-        return Conversion(tuple(responses), self.table, self.account, self.wanted)
+        return Conversion(tuple(responses), self.table, self.account, self.mapping)
 
     def _read(self, part: Item | ResolvedRanking, row: Row) -> Iterator[Preference | NoAnswer]:
         if isinstance(part, Item):
-            return read_item(part, row, self.wanted)
-        return read_ranking(part, row, self.wanted)
+            return read_item(part, row, self.mapping)
+        return read_ranking(part, row, self.mapping)
 
     def _leave_out(self, row: Row, reason: Reason) -> None:
         answers = 0
         for part in self.parts:
             try:
                 preferences = sum(isinstance(outcome, Preference) for outcome in self._read(part, row))
-            except (InputError, UntoldError):
+            except (InputError, MissingMeaningError):
                 continue
             answers += preferences if isinstance(part, Item) else min(preferences, 1)
         self.account.row_left_out(reason, row, answers)
 
     def _is_asked_away(self, row: Row) -> bool:
-        if not self.wanted.leave_out:
+        if not self.mapping.leave_out:
             return False
         places = (str(row.line), f"{row.path}:{row.line}", f"{Path(row.path).name}:{row.line}")
-        return any(place in self.wanted.leave_out for place in places)
+        return any(place in self.mapping.leave_out for place in places)
 
     def _responses(self, row: Row) -> list[ConvertedResponse]:
         preferences: list[Preference] = []
@@ -162,10 +162,10 @@ class _Reader:
             try:
                 for outcome in self._read(part, row):
                     (preferences if isinstance(outcome, Preference) else missing).append(outcome)  # type: ignore[arg-type]
-            except UntoldError as untold:
-                self.untold.add(untold)
+            except MissingMeaningError as error:
+                self.missing.add(error)
             except RowProblem as problem:
-                if problem.kind not in self.wanted.leave_out:
+                if problem.kind not in self.mapping.leave_out:
                     raise
                 missing.append(NoAnswer("", f"{problem.kind}, asked to be left out"))
         person = self.participant.text(row) if self.participant else None
@@ -196,7 +196,7 @@ class _Reader:
         first = self._rows.setdefault(cells, row)
         if first.path == row.path:
             return False
-        if "repeated" not in self.wanted.leave_out:
+        if "repeated" not in self.mapping.leave_out:
             raise InputError(
                 f"{row.where}: repeats {first.where}, cell by cell: leave such rows out by --leave-out "
                 "repeated; or, if they are other answers, convert the files one by one"
@@ -229,7 +229,7 @@ class _Reader:
             same_order = other.preference.mode_a == one.mode_a
             if other.preference.response == (one.response if same_order else MIRRORED[one.response]):
                 continue
-            if "contradictions" not in self.wanted.leave_out:
+            if "contradictions" not in self.mapping.leave_out:
                 who = f"participant {response.participant}" if response.participant else "the file"
                 raise InputError(
                     f"{response.row.where}: {who} says {one.response} for {one.mode_a} and {one.mode_b}, "

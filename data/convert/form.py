@@ -10,7 +10,7 @@ from data.convert.table import Table
 Preparation = Callable[[Table, ConversionMap], Table]
 
 
-def unchanged(table: Table, wanted: ConversionMap) -> Table:
+def unchanged(table: Table, mapping: ConversionMap) -> Table:
     """The table as it was read."""
     return table
 

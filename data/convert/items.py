@@ -46,7 +46,7 @@ class Item:
         return [column for column in (*columns, self.other, *(c for c, _ in self.one_of)) if column]
 
 
-def resolve_items(table: Table, wanted: ConversionMap) -> list[Item]:
+def resolve_items(table: Table, mapping: ConversionMap) -> list[Item]:
     """The items of a map in the order of their columns in the file.
 
     Raises
@@ -54,8 +54,8 @@ def resolve_items(table: Table, wanted: ConversionMap) -> list[Item]:
     InputError
         If a column is missing or nothing says what was on the two sides.
     """
-    items = [item for spec in wanted.answers for item in _expanded(table, spec, wanted)]
-    if len({(spec.left, spec.right, spec.pair) for spec in wanted.answers}) > 1:
+    items = [item for spec in mapping.answers for item in _expanded(table, spec, mapping)]
+    if len({(spec.left, spec.right, spec.pair) for spec in mapping.answers}) > 1:
         items = [_named(item) for item in items]
     for item in items:
         _check_sides(table, item)
@@ -67,12 +67,12 @@ def _named(item: Item) -> Item:
     return Item(**{**vars(item), "comparison": item.source.name if item.comparison else ""})
 
 
-def _expanded(table: Table, spec: AnswerColumn, wanted: ConversionMap) -> list[Item]:
+def _expanded(table: Table, spec: AnswerColumn, mapping: ConversionMap) -> list[Item]:
     pattern = spec.column or next((name for name in (spec.chosen, spec.left) if "*" in name), "")
     if "*" not in pattern or table.find(pattern):
         is_one_of_several = bool(spec.column) and not spec.pair and "*" in spec.left
         return [
-            _item(table, spec, wanted, spec.column, (plain(spec.column), spec.question), is_one_of_several)
+            _item(table, spec, mapping, spec.column, (plain(spec.column), spec.question), is_one_of_several)
         ]
     numbers = table.matches(pattern)
     if not numbers:
@@ -84,14 +84,14 @@ def _expanded(table: Table, spec: AnswerColumn, wanted: ConversionMap) -> list[I
     for number in numbers:
         column = plain(pattern).replace("*", number)
         keys = (number, column, plain(pattern))
-        items.append(_item(table, spec, wanted, number, keys, is_one_of_several=True))
+        items.append(_item(table, spec, mapping, number, keys, is_one_of_several=True))
     return items
 
 
 def _item(
     table: Table,
     spec: AnswerColumn,
-    wanted: ConversionMap,
+    mapping: ConversionMap,
     star: str,
     keys: tuple[str, ...],
     is_one_of_several: bool,
@@ -119,7 +119,7 @@ def _item(
         one_of=one_of,
         keys=keys,
         comparison=star if is_one_of_several else "",
-        modes=next((wanted.pairs[key] for key in keys if key in wanted.pairs), None),
+        modes=next((mapping.pairs[key] for key in keys if key in mapping.pairs), None),
     )
 
 

@@ -29,21 +29,21 @@ class ResolvedRanking:
         return self.columns[0].name
 
 
-def resolve_rankings(table: Table, wanted: ConversionMap) -> list[ResolvedRanking]:
+def resolve_rankings(table: Table, mapping: ConversionMap) -> list[ResolvedRanking]:
     """The rankings of a map as they are in the file."""
-    return [_resolved(table, ranking, wanted) for ranking in wanted.rankings]
+    return [_resolved(table, ranking, mapping) for ranking in mapping.rankings]
 
 
-def _resolved(table: Table, ranking: Ranking, wanted: ConversionMap) -> ResolvedRanking:
+def _resolved(table: Table, ranking: Ranking, mapping: ConversionMap) -> ResolvedRanking:
     columns = [column for name in ranking.columns for column in _columns(table, name)]
     if len(columns) < 2:
         raise InputError(f"{table.path}: {listed(ranking.columns)}: a ranking needs two columns at least")
     if ranking.cells == "ranks":
-        modes = [wanted.modes.get(name, name) for name in (_option(table, column) for column in columns)]
+        modes = [mapping.modes.get(name, name) for name in (_option(table, column) for column in columns)]
     else:
         cells = (column.text(row) for row in table.rows for column in columns)
         texts = sorted({text for text in cells if text and text not in ranking.unranked})
-        modes = [wanted.modes.get(text, text) for text in texts]
+        modes = [mapping.modes.get(text, text) for text in texts]
     return ResolvedRanking(ranking, tuple(columns), tuple(modes))
 
 
@@ -65,7 +65,7 @@ def _option(table: Table, column: Column) -> str:
 
 
 def read_ranking(
-    ranking: ResolvedRanking, row: Row, wanted: ConversionMap
+    ranking: ResolvedRanking, row: Row, mapping: ConversionMap
 ) -> Iterator[Preference | NoAnswer]:
     """The pairs of one ranking, the better mode first; equal ranks are a tie."""
     texts = [column.text(row) for column in ranking.columns]
@@ -73,7 +73,9 @@ def read_ranking(
         yield NoAnswer(ranking.name, "without a ranking", is_empty=True)
         return
     places = (
-        _ranks(ranking, row, texts) if ranking.spec.cells == "ranks" else _places(ranking, row, texts, wanted)
+        _ranks(ranking, row, texts)
+        if ranking.spec.cells == "ranks"
+        else _places(ranking, row, texts, mapping)
     )
     for mode in ranking.modes:
         if mode not in places:
@@ -96,13 +98,13 @@ def _ranks(ranking: ResolvedRanking, row: Row, texts: list[str | None]) -> dict[
 
 
 def _places(
-    ranking: ResolvedRanking, row: Row, texts: list[str | None], wanted: ConversionMap
+    ranking: ResolvedRanking, row: Row, texts: list[str | None], mapping: ConversionMap
 ) -> dict[str, float]:
     places: dict[str, float] = {}
     for place, (column, text) in enumerate(zip(ranking.columns, texts, strict=True)):
         if not text or text in ranking.spec.unranked:
             continue
-        mode = wanted.modes.get(text, text)
+        mode = mapping.modes.get(text, text)
         if mode in places:
             raise RowProblem(f"{row.where}, {shown(column.name)}: {shown(mode)!r} is ranked twice")
         places[mode] = place

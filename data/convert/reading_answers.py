@@ -53,7 +53,7 @@ class RowProblem(InputError):
         self.kind = kind
 
 
-class UntoldError(Exception):
+class MissingMeaningError(Exception):
     """A value that nothing gives a meaning to."""
 
     def __init__(self, what: str, column: str, value: str) -> None:
@@ -66,27 +66,27 @@ def is_number(text: str) -> bool:
     return _NUMBER.fullmatch(text) is not None
 
 
-def read_item(item: Item, row: Row, wanted: ConversionMap) -> Iterator[Preference | NoAnswer]:
+def read_item(item: Item, row: Row, mapping: ConversionMap) -> Iterator[Preference | NoAnswer]:
     """The answers of one item in one row: one, or one a question where the cell is a JSON object.
 
     Raises
     ------
     RowProblem
         If the row contradicts the map.
-    UntoldError
+    MissingMeaningError
         If the map has no meaning for a word, a pair or a mode.
     """
     for question, word in _words(item, row):
         column = item.source.name
         if not word:
-            yield _empty(item, row, word, wanted)
+            yield _empty(item, row, word, mapping)
             continue
-        meaning = _meaning(item, row, word, wanted)
+        meaning = _meaning(item, row, word, mapping)
         reason = reason_of_none(meaning)
         if reason is not None:
             yield NoAnswer(column, reason)
             continue
-        left, right = _modes(item, row, wanted)
+        left, right = _modes(item, row, mapping)
         if left == right:
             raise RowProblem(
                 f"{row.where}, {column}: {shown(left)!r} against itself: "
@@ -95,9 +95,9 @@ def read_item(item: Item, row: Row, wanted: ConversionMap) -> Iterator[Preferenc
             )
         answer: Answer
         if meaning == CHOSEN:
-            chosen = _chosen(item, row, left, right, wanted)
+            chosen = _chosen(item, row, left, right, mapping)
             if chosen is None:
-                yield _empty(item, row, None, wanted)
+                yield _empty(item, row, None, mapping)
                 continue
             answer = chosen
         else:
@@ -141,39 +141,39 @@ def _ticked(item: Item, row: Row) -> str:
     return ones[0]
 
 
-def _empty(item: Item, row: Row, word: Cell, wanted: ConversionMap) -> NoAnswer:
+def _empty(item: Item, row: Row, word: Cell, mapping: ConversionMap) -> NoAnswer:
     if item.other is not None and item.other.text(row):
         return NoAnswer(item.source.name, f'"other": a text in {shown(item.other.name)}')
-    if word is None and wanted.unquoted_is_not_asked:
+    if word is None and mapping.unquoted_is_not_asked:
         return NoAnswer(item.source.name, "", is_empty=True)
-    return NoAnswer(item.source.name, wanted.empty, is_empty=True)
+    return NoAnswer(item.source.name, mapping.empty, is_empty=True)
 
 
-def _meaning(item: Item, row: Row, word: str, wanted: ConversionMap) -> str:
+def _meaning(item: Item, row: Row, word: str, mapping: ConversionMap) -> str:
     """What a word means: an answer, a side, ``none`` or ``chosen``."""
-    for meaning in (item.spec.words.get(word), wanted.words.get(word)):
+    for meaning in (item.spec.words.get(word), mapping.words.get(word)):
         if meaning is not None:
             return meaning
     if item.one_of:
         return next(meaning for column, meaning in item.one_of if column.name == word)
     if item.spec.always is not None:
         return item.spec.always
-    if wanted.scale is not None and is_number(word):
-        return _level(item.source, row, word, wanted)
+    if mapping.scale is not None and is_number(word):
+        return _level(item.source, row, word, mapping)
     if item.answer is None:
         return CHOSEN
-    raise UntoldError("word", item.source.name, word)
+    raise MissingMeaningError("word", item.source.name, word)
 
 
-def _level(column: Column, row: Row, word: str, wanted: ConversionMap) -> Answer:
+def _level(column: Column, row: Row, word: str, mapping: ConversionMap) -> Answer:
     """The answer of a number on a scale around 0; a comma is a decimal one."""
-    assert wanted.scale is not None
-    levels = wanted.scale.levels
-    if not wanted.scale.positive:
-        raise UntoldError("sign", column.name, word)
+    assert mapping.scale is not None
+    levels = mapping.scale.levels
+    if not mapping.scale.positive:
+        raise MissingMeaningError("sign", column.name, word)
     if _WHOLE.fullmatch(word) and not _THOUSANDS.fullmatch(word):
         number = int(word.replace("−", "-").replace(",", ".").partition(".")[0])
-        towards_a = number if wanted.scale.positive == "A" else -number
+        towards_a = number if mapping.scale.positive == "A" else -number
         for answer in SCALES[levels]:
             if _signed_arrows(answer) == towards_a:
                 return answer
@@ -190,32 +190,32 @@ def _signed_arrows(answer: Answer) -> int:
     return answer.count(">") * (1 if answer.startswith("A") else -1)
 
 
-def _modes(item: Item, row: Row, wanted: ConversionMap) -> tuple[str, str]:
+def _modes(item: Item, row: Row, mapping: ConversionMap) -> tuple[str, str]:
     """The modes that are named as left and as right."""
     if item.left is not None and item.right is not None:
-        left = _mode(item.left, row, wanted, "left" in item.spec.renamed)
-        return left, _mode(item.right, row, wanted, "right" in item.spec.renamed)
+        left = _mode(item.left, row, mapping, "left" in item.spec.renamed)
+        return left, _mode(item.right, row, mapping, "right" in item.spec.renamed)
     if item.pair is not None:
         key = item.pair.text(row)
         if not key:
             raise RowProblem(f"{row.where}, {item.pair.name}: empty, but it says which pair was shown")
-        if key not in wanted.pairs:
-            raise UntoldError("pair", item.pair.name, key)
-        return wanted.pairs[key]
+        if key not in mapping.pairs:
+            raise MissingMeaningError("pair", item.pair.name, key)
+        return mapping.pairs[key]
     assert item.modes is not None
     return item.modes
 
 
-def _mode(column: Column, row: Row, wanted: ConversionMap, must_be_renamed: bool) -> str:
+def _mode(column: Column, row: Row, mapping: ConversionMap, must_be_renamed: bool) -> str:
     text = column.text(row)
     if not text:
         raise RowProblem(f"{row.where}, {column.name}: empty, but a mode is needed beside an answer")
-    if must_be_renamed and text not in wanted.modes:
-        raise UntoldError("mode", column.name, text)
-    return wanted.modes.get(text, text)
+    if must_be_renamed and text not in mapping.modes:
+        raise MissingMeaningError("mode", column.name, text)
+    return mapping.modes.get(text, text)
 
 
-def _chosen(item: Item, row: Row, left: str, right: str, wanted: ConversionMap) -> Answer | None:
+def _chosen(item: Item, row: Row, left: str, right: str, mapping: ConversionMap) -> Answer | None:
     """The answer where a column names the preferred mode."""
     if item.chosen is None:
         raise RowProblem(
@@ -224,7 +224,7 @@ def _chosen(item: Item, row: Row, left: str, right: str, wanted: ConversionMap) 
     text = item.chosen.text(row)
     if not text:
         return None
-    mode = wanted.modes.get(text, text)
+    mode = mapping.modes.get(text, text)
     if mode not in (left, right):
         raise RowProblem(
             f"{row.where}, {item.chosen.name}: {shown(text)!r} is neither {left!r} nor {right!r}"
@@ -238,7 +238,7 @@ def _ordered(item: Item, row: Row, left: str, right: str, answer: Answer) -> tup
     if order is None or item.order is None:
         return left, right, answer, item.spec.sides == "known"
     if not item.spec.answer_is:
-        raise UntoldError("answer_is", item.source.name, item.source.text(row) or "")
+        raise MissingMeaningError("answer_is", item.source.name, item.source.text(row) or "")
     text = item.order.text(row) or ""
     if text in order.as_named:
         return left, right, answer, True

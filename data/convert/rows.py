@@ -47,7 +47,7 @@ class ResolvedRule:
         return Reason(f"{self.column.name} = {shown(value)}", per_column=self.rule.per, per_value=per)
 
 
-def resolve_rules(table: Table, wanted: ConversionMap) -> list[ResolvedRule]:
+def resolve_rules(table: Table, mapping: ConversionMap) -> list[ResolvedRule]:
     """The rules of a map in their order; optional ones only where the file has the column.
 
     Raises
@@ -56,7 +56,7 @@ def resolve_rules(table: Table, wanted: ConversionMap) -> list[ResolvedRule]:
         If a column is missing, or no row has a value that a rule keeps.
     """
     rules = []
-    for rule in wanted.rows:
+    for rule in mapping.rows:
         if rule.optional and table.find(rule.column) is None:
             continue
         column = table.column(rule.column)
@@ -73,9 +73,9 @@ def resolve_rules(table: Table, wanted: ConversionMap) -> list[ResolvedRule]:
     return rules
 
 
-def check_rows_are_chosen(table: Table, kept: Iterable[Row], form: Form, wanted: ConversionMap) -> None:
+def check_rows_are_chosen(table: Table, kept: Iterable[Row], form: Form, mapping: ConversionMap) -> None:
     """Refuse a file in which a column marks several kinds of rows and nothing says which count."""
-    if {rule.column for rule in wanted.rows} & set(form.choose_rows):
+    if {rule.column for rule in mapping.rows} & set(form.choose_rows):
         return
     for name in form.choose_rows:
         column = table.find(name)
@@ -91,9 +91,9 @@ def check_rows_are_chosen(table: Table, kept: Iterable[Row], form: Form, wanted:
         return
 
 
-def filled_down(table: Table, wanted: ConversionMap) -> Table:
+def filled_down(table: Table, mapping: ConversionMap) -> Table:
     """The table with empty cells of some columns filled by what stands above."""
-    places = [table.column(name).place for name in wanted.fill_down]
+    places = [table.column(name).place for name in mapping.fill_down]
     if not places:
         return table
     above: dict[int, str | None] = {}

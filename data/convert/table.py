@@ -73,23 +73,25 @@ class Table:
         InputError
             If several columns are meant.
         """
-        wanted = plain(reference)
-        places = [place for place, name in enumerate(self.names) if name == wanted]
-        if not places and (number := re.fullmatch(r"#(\d+)", wanted)):
+        reference = plain(reference)
+        places = [place for place, name in enumerate(self.names) if name == reference]
+        if not places and (number := re.fullmatch(r"#(\d+)", reference)):
             places = [int(number[1]) - 1] if 0 < int(number[1]) <= len(self.names) else []
-        if not places and wanted.endswith("..."):
-            places = [place for place, name in enumerate(self.names) if name.startswith(wanted[:-3])]
+        if not places and reference.endswith("..."):
+            places = [place for place, name in enumerate(self.names) if name.startswith(reference[:-3])]
         if len(places) > 1:
             numbers = listed(f"#{place + 1}" for place in places)
-            raise InputError(f"{self.path}: {shown(wanted)}: several columns have that name; write {numbers}")
+            raise InputError(
+                f"{self.path}: {shown(reference)}: several columns have that name; write {numbers}"
+            )
         if places:
-            return Column(wanted, places[0])
-        holder, _, keys = wanted.rpartition(".")
+            return Column(reference, places[0])
+        holder, _, keys = reference.rpartition(".")
         trail: list[str] = []
         while holder:
             trail.insert(0, keys)
             if self.names.count(holder) == 1:
-                return Column(wanted, self.names.index(holder), tuple(trail))
+                return Column(reference, self.names.index(holder), tuple(trail))
             holder, _, keys = holder.rpartition(".")
         return None
 

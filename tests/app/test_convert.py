@@ -16,8 +16,8 @@ TABLE = ["--from", "table", "--participant", "who", "--left", "l", "--right", "r
 WORDS = ["--word", "x=A", "--word", "y=B", "--word", "z=equal"]
 
 
-def convert(path: Path, *told: str, out: str = "out.csv") -> int:
-    return run(["convert", str(path), *told, "--out", str(path.parent / out)])
+def convert(path: Path, *options: str, out: str = "out.csv") -> int:
+    return run(["convert", str(path), *options, "--out", str(path.parent / out)])
 
 
 def table(folder: Path, *rows: str, name: str = "in.csv") -> Path:
@@ -75,9 +75,9 @@ def test_a_number_is_the_answer_of_its_distance_from_0(tmp_path: Path, levels: i
     numbers = [number for number in range(-half, half + 1) if number or levels % 2]
     path = table(tmp_path, *(f"p,M1,M2,{number}" for number in numbers))
     assert convert(path, *TABLE, "--levels", str(levels), "--positive", positive) == 0
-    given_answers = [answer for _, _, _, answer in responses(path)]
-    assert given_answers == list(SCALES[levels] if positive == "B" else reversed(SCALES[levels]))
-    assert set(given_answers) <= set(ANSWERS)
+    answers = [answer for _, _, _, answer in responses(path)]
+    assert answers == list(SCALES[levels] if positive == "B" else reversed(SCALES[levels]))
+    assert set(answers) <= set(ANSWERS)
 
 
 @pytest.mark.parametrize("number", ["1,000", "4", "0.5", "-4"])
@@ -90,7 +90,7 @@ def test_a_number_that_is_not_a_level_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("rows", "told", "message"),
+    ("rows", "options", "message"),
     [
         (["p,M1,M1,x"], [], "line 2, answer: 'M1' against itself"),
         (["p,M1,,x"], [], "line 2, r: empty, but a mode is needed"),
@@ -114,12 +114,12 @@ def test_a_number_that_is_not_a_level_is_refused(
     ],
 )
 def test_what_is_wrong_is_one_line_and_nothing_is_written(
-    tmp_path: Path, rows: list[str], told: list[str], message: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, rows: list[str], options: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = table(tmp_path, *rows)
     earlier = tmp_path / "out.csv"
     earlier.write_text("earlier", encoding="utf-8")
-    assert convert(path, *TABLE, *WORDS, *told) == 2
+    assert convert(path, *TABLE, *WORDS, *options) == 2
     printed = capsys.readouterr()
     assert message in printed.err
     assert printed.err.count("\n") == 1
@@ -162,10 +162,10 @@ def test_one_answer_twice_to_the_same_comparison_is_refused(
 ) -> None:
     path = tmp_path / "wide.csv"
     path.write_text("who,pair1,pair2\np,x,y\np,y,y\n", encoding="utf-8")
-    told = ["--from", "table", "--participant", "who", "--answer", "pair*", "--pair", "1=M1,M2", *WORDS]
-    assert convert(path, *told, "--pair", "2=M2,M3") == 2
+    options = ["--from", "table", "--participant", "who", "--answer", "pair*", "--pair", "1=M1,M2", *WORDS]
+    assert convert(path, *options, "--pair", "2=M2,M3") == 2
     assert "line 3: p answered preference of 1 already" in capsys.readouterr().err
-    assert convert(path, *told, "--pair", "2=M2,M3", "--leave-out", "3") == 0
+    assert convert(path, *options, "--pair", "2=M2,M3", "--leave-out", "3") == 0
     assert responses(path) == [("p", "M1", "M2", "A>B"), ("p", "M2", "M3", "B>A")]
 
 
@@ -179,8 +179,8 @@ def test_names_from_the_file_cannot_control_the_terminal(
 
 def test_where_a_side_is_told_by_a_column_modes_and_answers_change_with_it(tmp_path: Path) -> None:
     out = tmp_path / "out.csv"
-    told = ["--from", "no-more-marking", "--order", "isLeft=TRUE,FALSE", "--leave-out", "7"]
-    assert run(["convert", str(FORMS / "no_more_marking_decisions.csv"), *told, "--out", str(out)]) == 0
+    options = ["--from", "no-more-marking", "--order", "isLeft=TRUE,FALSE", "--leave-out", "7"]
+    assert run(["convert", str(FORMS / "no_more_marking_decisions.csv"), *options, "--out", str(out)]) == 0
     with out.open(newline="", encoding="utf-8") as file:
         rows = [
             tuple(row[c] for c in ("mode_a", "mode_b", "response", "sides")) for row in csv.DictReader(file)
@@ -198,8 +198,8 @@ def test_where_beaqlejs_wrote_the_file_the_answer_changes_with_the_order(tmp_pat
     answers = {}
     for meaning in ("button", "item"):
         out = tmp_path / f"{meaning}.csv"
-        told = ["--from", "beaqlejs", *pairs, "--answer-is", meaning]
-        assert run(["convert", str(FORMS / "beaqlejs_listener_1.txt"), *told, "--out", str(out)]) == 0
+        options = ["--from", "beaqlejs", *pairs, "--answer-is", meaning]
+        assert run(["convert", str(FORMS / "beaqlejs_listener_1.txt"), *options, "--out", str(out)]) == 0
         answers[meaning] = responses(out, out.name)
     assert answers["button"] == [
         ("L1", "M1", "M2", "A>B"),
@@ -217,9 +217,9 @@ def test_the_choice_question_beside_a_surveymonkey_ranking(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out.csv"
-    told = ["--from", "surveymonkey", "--answer", "#13=safer", "--pair", "safer=M1,M2"]
+    options = ["--from", "surveymonkey", "--answer", "#13=safer", "--pair", "safer=M1,M2"]
     words = ["--word", "M1=A", "--word", "M2=B"]
-    assert run(["convert", str(FORMS / "surveymonkey_ranking.csv"), *told, *words, "--out", str(out)]) == 0
+    assert run(["convert", str(FORMS / "surveymonkey_ranking.csv"), *options, *words, "--out", str(out)]) == 0
     assert responses(out) == [("118000000001", "M1", "M2", "A>B"), ("118000000004", "M1", "M2", "B>A")]
     assert 'no answer: 1 in #13: "other"; line 5 (118000000002)' in capsys.readouterr().out
 
@@ -228,8 +228,8 @@ def test_a_matrix_is_turned_over_by_who_won(tmp_path: Path) -> None:
     answers = {}
     for winner in ("rows", "columns"):
         out = tmp_path / f"{winner}.csv"
-        told = ["--from", "matrix-counts", "--winner", winner, "--out", str(out)]
-        assert run(["convert", str(FORMS / "matrix_counts.csv"), *told]) == 0
+        options = ["--from", "matrix-counts", "--winner", winner, "--out", str(out)]
+        assert run(["convert", str(FORMS / "matrix_counts.csv"), *options]) == 0
         with out.open(newline="", encoding="utf-8") as file:
             answers[winner] = [(row["response"], row["count"]) for row in csv.DictReader(file)]
     counts = ["7", "11", "6", "8", "2", "5"]
@@ -245,17 +245,26 @@ def test_a_gorilla_file_without_its_last_line_is_said_to_be_cut_off(
     path = tmp_path / "cut.csv"
     whole = (FORMS / "gorilla_task_builder_1.csv").read_bytes()
     path.write_bytes(whole.replace(b"END OF FILE\n", b""))
-    told = ["--left", "left_video", "--right", "right_video", "--word", "Left=A", "--word", "Right=B"]
-    assert convert(path, "--from", "gorilla", *told, "--only", "display=trial") == 0
+    options = ["--left", "left_video", "--right", "right_video", "--word", "Left=A", "--word", "Right=B"]
+    assert convert(path, "--from", "gorilla", *options, "--only", "display=trial") == 0
     assert "the last line is not END OF FILE: the file is cut off" in capsys.readouterr().out
 
 
 def test_a_url_parameter_of_a_jatos_archive_names_the_participant(tmp_path: Path) -> None:
     out = tmp_path / "out.csv"
-    told = ["--participant", "@url.PROLIFIC_PID", "--left", "left", "--right", "right", "--only", "task=pair"]
+    options = [
+        "--participant",
+        "@url.PROLIFIC_PID",
+        "--left",
+        "left",
+        "--right",
+        "right",
+        "--only",
+        "task=pair",
+    ]
     words = ["--word", "0=A", "--word", "1=B", "--word", "2=equal"]
     archive = FORMS / "jatos_results.jrzip"
-    assert run(["convert", str(archive), "--from", "jatos", *told, *words, "--out", str(out)]) == 0
+    assert run(["convert", str(archive), "--from", "jatos", *options, *words, "--out", str(out)]) == 0
     assert [who for who, *_ in responses(out)] == ["pid-a", "pid-a", "pid-a", "pid-b", "pid-b"]
 
 

@@ -25,24 +25,24 @@ class Case:
 
     files: list[str]
     form: str
-    told: str
-    says: list[str]
+    options: str
+    prints: list[str]
     right: str = ""
-    untold: list[dict] = field(default_factory=list)
+    too_little: list[dict] = field(default_factory=list)
 
     @property
     def paths(self) -> list[str]:
         return [str(FOLDER / name) for name in self.files]
 
-    def arguments(self, told: str, out: Path) -> list[str]:
-        """Of the command, with all that is told."""
-        return ["convert", *self.paths, "--from", self.form, *shlex.split(told), "--out", str(out)]
+    def arguments(self, options: str, out: Path) -> list[str]:
+        """Of the command."""
+        return ["convert", *self.paths, "--from", self.form, *shlex.split(options), "--out", str(out)]
 
 
 CASES = [Case(**entry) for entry in tomllib.loads((FOLDER / "cases.toml").read_text("utf-8"))["case"]]
 CONVERTED = [case for case in CASES if case.right]
 REFUSED = [case for case in CASES if not case.right]
-UNTOLD = [(case, untold) for case in CASES for untold in case.untold]
+TOO_LITTLE = [(case, too_little) for case in CASES for too_little in case.too_little]
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:
@@ -77,7 +77,7 @@ def test_a_file_becomes_the_right_answers(
     case: Case, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "responses.csv"
-    code = run(case.arguments(case.told, out))
+    code = run(case.arguments(case.options, out))
     printed = capsys.readouterr()
     assert (code, printed.err) == (0, "")
     right, converted = rows_of(FOLDER / "right" / case.right), rows_of(out)
@@ -88,14 +88,14 @@ def test_a_file_becomes_the_right_answers(
             assert expected in (same, mirrored(same))
         else:
             assert expected == same
-    assert [part for part in case.says if part not in printed.out] == []
+    assert [part for part in case.prints if part not in printed.out] == []
     assert len(read_response_csv(out).rows) == len(right)
 
 
 @pytest.mark.parametrize("case", CONVERTED, ids=name_of)
 def test_the_written_map_gives_the_same_bytes(case: Case, tmp_path: Path) -> None:
     out, again, kept = tmp_path / "responses.csv", tmp_path / "again.csv", tmp_path / "map.toml"
-    assert run([*case.arguments(case.told, out), "--write-map", str(kept)]) == 0
+    assert run([*case.arguments(case.options, out), "--write-map", str(kept)]) == 0
     rewritten = tmp_path / "again.toml"
     arguments = ["--map", str(kept), "--out", str(again), "--write-map", str(rewritten)]
     assert run(["convert", *case.paths, *arguments]) == 0
@@ -107,25 +107,27 @@ def test_the_written_map_gives_the_same_bytes(case: Case, tmp_path: Path) -> Non
 def test_a_file_that_cannot_be_right_is_refused_in_one_line(
     case: Case, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    refuses(case, case.told, case.says, tmp_path, capsys)
+    refuses(case, case.options, case.prints, tmp_path, capsys)
 
 
-@pytest.mark.parametrize(("case", "untold"), UNTOLD, ids=[f"{name_of(c)}-{u['told']}" for c, u in UNTOLD])
+@pytest.mark.parametrize(
+    ("case", "too_little"), TOO_LITTLE, ids=[f"{name_of(c)}-{u['options']}" for c, u in TOO_LITTLE]
+)
 def test_what_is_not_told_is_asked_for_with_the_column_and_its_values(
-    case: Case, untold: dict, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    case: Case, too_little: dict, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    refuses(case, untold["told"], untold["says"], tmp_path, capsys)
+    refuses(case, too_little["options"], too_little["prints"], tmp_path, capsys)
 
 
 def refuses(
-    case: Case, told: str, says: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    case: Case, options: str, prints: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "responses.csv"
-    assert run([*case.arguments(told, out), "--write-map", str(tmp_path / "map.toml")]) == 2
+    assert run([*case.arguments(options, out), "--write-map", str(tmp_path / "map.toml")]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
     assert printed.err.count("\n") == 1
-    assert [part for part in says if part not in printed.err] == []
+    assert [part for part in prints if part not in printed.err] == []
     assert list(tmp_path.iterdir()) == []
 
 

@@ -15,6 +15,7 @@ PAGES = [
     "app/README.md",
     "app/server/README.md",
     "data/README.md",
+    "data/convert/README.md",
     "sim_trials/README.md",
 ]
 LARGEST_PICTURE = 120_000

@@ -10,7 +10,7 @@ LISTENER, PREFERENCE = "@listener", "@preference"
 """Columns: the file's UserName, and its Preference or why there is none."""
 
 
-def _with_listeners(table: Table, wanted: ConversionMap) -> Table:
+def _with_listeners(table: Table, mapping: ConversionMap) -> Table:
     """The tests with their listener; the records of the listener themselves left out."""
     test, name = table.column("TestID"), table.column("UserName")
     preference, order, file = (

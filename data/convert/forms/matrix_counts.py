@@ -25,10 +25,10 @@ def _labelled(table: Table) -> tuple[tuple[str, ...], int]:
     )
 
 
-def _melted(table: Table, wanted: ConversionMap) -> Table:
+def _melted(table: Table, mapping: ConversionMap) -> Table:
     """A row a cell: its two modes, the one that won, how often; cells of 0 say nothing."""
     modes, before = _labelled(table)
-    if not wanted.winner:
+    if not mapping.winner:
         first = table.rows[0]
         seen = listed(
             f"{mode}: {(first.cells[place + before] or '').strip()}" for place, mode in enumerate(modes)
@@ -42,7 +42,7 @@ def _melted(table: Table, wanted: ConversionMap) -> Table:
         for other, cell in zip(modes, row.cells[before:], strict=False):
             count = _count(row, mode, other, cell)
             if count:
-                winner = mode if wanted.winner == "rows" else other
+                winner = mode if mapping.winner == "rows" else other
                 rows.append(Row(row.path, row.line, (mode, other, winner, str(count))))
     return Table(table.path, ("@row", "@column", "@winner", "@count"), tuple(rows), table.notes)
 

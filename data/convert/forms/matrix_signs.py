@@ -14,7 +14,7 @@ _BEFORE = 2
 """Columns before the signs."""
 
 
-def _melted(table: Table, wanted: ConversionMap) -> Table:
+def _melted(table: Table, mapping: ConversionMap) -> Table:
     """A row a sign: the person, the two modes, the sign."""
     modes = tuple(name for name in table.names if name != FILE)[_BEFORE:]
     rows = []

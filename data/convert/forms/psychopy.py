@@ -10,7 +10,7 @@ SEVERAL = "(several keys)"
 _KEYS = ".keys"
 
 
-def _with_single_keys(table: Table, wanted: ConversionMap) -> Table:
+def _with_single_keys(table: Table, mapping: ConversionMap) -> Table:
     """Keys that PsychoPy stored as a list: one of them alone, or marked as several."""
     places = {place for place, name in enumerate(table.names) if name.endswith(_KEYS)}
     rows = tuple(

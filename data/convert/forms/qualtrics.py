@@ -12,7 +12,7 @@ _HEADER_ROWS = 3
 """Rows below the names in which the ImportId is looked for."""
 
 
-def _without_header_rows(table: Table, wanted: ConversionMap) -> Table:
+def _without_header_rows(table: Table, mapping: ConversionMap) -> Table:
     """Without the rows of question texts and of import ids, wherever they still are."""
     for place, row in enumerate(table.rows[:_HEADER_ROWS]):
         if any(cell and cell.startswith('{"ImportId"') for cell in row.cells):

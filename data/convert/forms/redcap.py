@@ -9,7 +9,7 @@ COMPLETE = "@complete"
 """Column with the row's own ``INSTRUMENT_complete``: 0 incomplete, 1 unverified, 2 complete."""
 
 
-def _with_status(table: Table, wanted: ConversionMap) -> Table:
+def _with_status(table: Table, mapping: ConversionMap) -> Table:
     if INSTRUMENT not in table.names:
         return table
     instrument = table.column(INSTRUMENT)

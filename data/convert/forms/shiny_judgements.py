@@ -9,7 +9,7 @@ from data.convert.table import Row, Table
 _DECISION = re.compile(r"([^,]+),([^,]+) -> ([^,]+),([^,]+)")
 
 
-def _split(table: Table, wanted: ConversionMap) -> Table:
+def _split(table: Table, mapping: ConversionMap) -> Table:
     """The table with the decision's parts in columns of their own."""
     column = table.column("decision")
 

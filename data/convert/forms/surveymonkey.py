@@ -23,7 +23,7 @@ def _header(first: Sequence[Record]) -> Header:
     return Header(tuple(names), records=2)
 
 
-def _with_other(table: Table, wanted: ConversionMap) -> Table:
+def _with_other(table: Table, mapping: ConversionMap) -> Table:
     """The table with ``(other)`` as the response where only a text was written."""
     others = {
         table.names.index(name.removesuffix(_OTHER) + _RESPONSE): place

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from data.convert.items import Item
-from data.convert.reading_answers import UntoldError, is_number
+from data.convert.reading_answers import MissingMeaningError, is_number
 from data.convert.table import Row, Table, listed
 from data.csv_file import shown
 from data.errors import InputError
@@ -20,16 +20,16 @@ _ASKS = {
 _OR_NUMBERS = "; or all numbers around 0 by --levels N --positive A or B"
 
 
-class Untold:
+class MissingMeanings:
     """Values without a meaning, by what is missing and by column."""
 
     def __init__(self, table: Table, kept: Sequence[Row], items: Sequence[Item]) -> None:
         self._table, self._kept, self._items = table, kept, items
         self._missing: dict[str, dict[str, dict[str, None]]] = {}
 
-    def add(self, untold: UntoldError) -> None:
+    def add(self, error: MissingMeaningError) -> None:
         """Remember one value."""
-        self._missing.setdefault(untold.what, {}).setdefault(untold.column, {})[untold.value] = None
+        self._missing.setdefault(error.what, {}).setdefault(error.column, {})[error.value] = None
 
     def check(self) -> None:
         """Raise for what is missing first, with all its values and the others in the same columns."""

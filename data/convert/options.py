@@ -1,4 +1,4 @@
-"""What a user says on the command line, as keys of a map."""
+"""The options of ``elbowroom convert``, as keys of a map."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,12 +16,12 @@ _WRITTEN = {
     "--order": "COLUMN=AS_NAMED,EXCHANGED",
 }
 NOBODY = "none"
-"""What is said as ``--participant`` where a file names nobody."""
+"""The value of ``--participant`` where a file names nobody."""
 
 
 @dataclass(frozen=True)
-class Told:
-    """Options of ``elbowroom convert`` as they were written; empty where nothing was said."""
+class ConvertOptions:
+    """Options of ``elbowroom convert`` as they were written; empty where one is not there."""
 
     participant: str | None = None
     answer: Sequence[str] = ()
@@ -45,7 +45,7 @@ class Told:
     sheet: str | None = None
 
 
-def with_told(form: Form, base: ConversionMap, told: Told) -> ConversionMap:
+def with_options(form: Form, base: ConversionMap, options: ConvertOptions) -> ConversionMap:
     """A form's map, or one from a file, with what the command line says instead or in addition.
 
     Raises
@@ -55,46 +55,48 @@ def with_told(form: Form, base: ConversionMap, told: Told) -> ConversionMap:
     """
     content: dict[str, object] = base.model_dump(mode="json", exclude_none=True)
     content["form"] = form.name
-    if told.participant is not None:
-        content["participant"] = "" if told.participant == NOBODY else told.participant
+    if options.participant is not None:
+        content["participant"] = "" if options.participant == NOBODY else options.participant
     for name in ("sheet", "winner"):
-        if (value := getattr(told, name)) is not None:
+        if (value := getattr(options, name)) is not None:
             content[name] = value
-    content["words"] = {**base.words, **_words(told.word)}
-    content["modes"] = {**base.modes, **_equations("--mode", told.mode)}
+    content["words"] = {**base.words, **_words(options.word)}
+    content["modes"] = {**base.modes, **_equations("--mode", options.mode)}
     content["pairs"] = {
         **base.pairs,
-        **{k: _two("--pair", k, v) for k, v in _equations("--pair", told.pair).items()},
+        **{k: _two("--pair", k, v) for k, v in _equations("--pair", options.pair).items()},
     }
-    content["rows"] = [*_list(content["rows"]), *_rules(told)]
-    content["keep"] = [*base.keep, *told.keep]
-    content["leave_out"] = [*base.leave_out, *told.leave_out]
-    _check_leave_out(told.leave_out)
-    if told.levels is not None or told.positive is not None:
+    content["rows"] = [*_list(content["rows"]), *_rules(options)]
+    content["keep"] = [*base.keep, *options.keep]
+    content["leave_out"] = [*base.leave_out, *options.leave_out]
+    _check_leave_out(options.leave_out)
+    if options.levels is not None or options.positive is not None:
         scale = base.scale.model_dump() if base.scale else {}
-        scale |= {"levels": told.levels} if told.levels is not None else {}
-        scale |= {"positive": told.positive} if told.positive is not None else {}
+        scale |= {"levels": options.levels} if options.levels is not None else {}
+        scale |= {"positive": options.positive} if options.positive is not None else {}
         if "levels" not in scale:
             raise InputError(
                 "--positive: needs --levels, the number of levels of the scale, such as 7 for -3 to 3"
             )
         content["scale"] = scale
-    rankings = [_ranking(form, text) for text in told.ranking]
+    rankings = [_ranking(form, text) for text in options.ranking]
     if rankings:
         content["rankings"] = rankings
-    answers = _answers(form, base, told, only_rankings=bool(rankings))
+    answers = _answers(form, base, options, only_rankings=bool(rankings))
     content["answers"] = answers
     return checked_map(content, "options")
 
 
-def _answers(form: Form, base: ConversionMap, told: Told, only_rankings: bool) -> list[dict[str, object]]:
-    """The answer columns: those named, or else those of the form or map; what is said of sides is for all."""
+def _answers(
+    form: Form, base: ConversionMap, options: ConvertOptions, only_rankings: bool
+) -> list[dict[str, object]]:
+    """The answer columns: those named, or else those of the form or map; the sides are for all."""
     answers = [
         answer.model_dump(mode="json", exclude_none=True, exclude_defaults=True) for answer in base.answers
     ]
-    if told.answer:
+    if options.answer:
         answers = []
-        for text in told.answer:
+        for text in options.answer:
             column, _, question = text.rpartition("=") if "=" in text else (text, "", "")
             answers.append({**form.answer, "column": column} | ({"question": question} if question else {}))
     elif only_rankings:
@@ -103,10 +105,10 @@ def _answers(form: Form, base: ConversionMap, told: Told, only_rankings: bool) -
         answers = [dict(form.answer)]
     changes: dict[str, object] = {}
     for name in ("question", "question_column", "left", "right", "answer_is"):
-        if (value := getattr(told, name)) is not None:
+        if (value := getattr(options, name)) is not None:
             changes[name] = value
-    if told.order is not None:
-        column, values = next(iter(_equations("--order", [told.order]).items()))
+    if options.order is not None:
+        column, values = next(iter(_equations("--order", [options.order]).items()))
         as_named, exchanged = _two("--order", column, values)
         changes["order"] = {"column": column, "as_named": [as_named], "exchanged": [exchanged]}
     return [{**answer, **changes} for answer in answers]
@@ -124,10 +126,10 @@ def _ranking(form: Form, text: str) -> dict[str, object]:
     return ranking | ({"question": question} if question else {})
 
 
-def _rules(told: Told) -> list[dict[str, object]]:
+def _rules(options: ConvertOptions) -> list[dict[str, object]]:
     """Rules of rows: several values of one column are alternatives."""
     rules: dict[tuple[str, str], list[str]] = {}
-    for key, texts in (("only", told.only), ("without", told.without)):
+    for key, texts in (("only", options.only), ("without", options.without)):
         for text in texts:
             column, equal, value = text.partition("=")
             if not equal:
