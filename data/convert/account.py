@@ -42,9 +42,11 @@ class Account:
         mapping: ConversionMap,
         items: tuple[Item, ...],
         rankings: tuple[ResolvedRanking, ...],
+        own_words: frozenset[str],
     ) -> None:
+        """Start at nothing; ``own_words`` are the form's own, which need not occur."""
         self._table, self._mapping = table, mapping
-        self._items, self._rankings = items, rankings
+        self._items, self._rankings, self._own_words = items, rankings, own_words
         self._rows: dict[str, _Tally] = {}
         self._answers: dict[str, _Tally] = {}
         self._taken: dict[str, _Tally] = {}
@@ -99,6 +101,7 @@ class Account:
         return [
             *self._column_lines(preferences),
             *self.left_out_lines(),
+            _mode_line(preferences),
             *_tie_lines(preferences),
             *self._unused_lines(preferences),
             *self._side_lines(preferences),
@@ -152,11 +155,20 @@ class Account:
         return f"answer to {question}, {sides}{order}"
 
     def _unused_lines(self, preferences: list[Preference]) -> list[str]:
-        """Words of the user's that do not occur: perhaps a misspelling."""
-        words = [word for word, meaning in self._mapping.words.items() if not meaning.startswith("none")]
-        seen = {preference.word for preference in preferences}
-        rest = [word for word in words if word not in seen]
-        return [f"not in the file: the words {listed(rest)}"] if rest else []
+        """Words and pairs that do not occur: perhaps a misspelling."""
+        meanings = self._mapping.words.items()
+        words = {word for word, meaning in meanings if not meaning.startswith("none")}
+        words -= {preference.word for preference in preferences} | self._own_words
+        pairs = set(self._mapping.pairs)
+        for item in self._items:
+            columns = [item.pair] if item.pair else []
+            pairs -= {text for column in columns for row in self._table.rows if (text := column.text(row))}
+            pairs -= set(item.keys) if item.modes else set()
+        return [
+            f"not in the responses: {what} {listed(sorted(names))}"
+            for what, names in (("words", words), ("pairs", pairs))
+            if names
+        ]
 
     def _side_lines(self, preferences: list[Preference]) -> list[str]:
         lines = []
@@ -169,9 +181,15 @@ class Account:
         if self._rankings:
             lines.append("pairs of one ranking are not independent: intervals from them are too narrow")
         scale = self._mapping.scale
-        if scale and (scale.levels % 2 == 0 or scale.levels > 5):
+        if scale:
             lines.append(f"a scale of {scale.levels} levels: report it with --levels {scale.levels}")
         return lines
+
+
+def _mode_line(preferences: list[Preference]) -> str:
+    """The modes, each with its number of responses."""
+    modes = Counter(mode for one in preferences for mode in (one.mode_a, one.mode_b))
+    return f"modes: {listed(f'{mode} ({n})' for mode, n in sorted(modes.items()))}"
 
 
 def _tie_lines(preferences: list[Preference]) -> list[str]:

@@ -7,10 +7,12 @@ question was asked. A quotation mark inside an unquoted cell is text.
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 from data.convert.table import Cell
 from data.errors import InputError
 
+_LINES_TO_LOOK_AT = 20
 SEPARATORS = (",", ";", "\t", "|")
 _INSIDE = r'[^"]*+(?:""[^"]*+)*+'
 _QUOTED = re.compile(f'"{_INSIDE}"')
@@ -41,7 +43,8 @@ def records(path: str, text: str, separator: str | None = None) -> list[Record]:
     text : str
         With line breaks as they are in the file.
     separator : str, optional
-        Otherwise the one that splits the first line most often.
+        Otherwise the one that gives the first lines equal numbers of cells, or else splits the header most
+        often.
 
     Raises
     ------
@@ -53,7 +56,7 @@ def records(path: str, text: str, separator: str | None = None) -> list[Record]:
     if named := re.match(r"sep=(.)\n", text):
         separator, text, first_line = named[1], text[named.end() :], 2
     if separator is None:
-        separator = _separator(text)
+        separator = _separator(path, text)
     return list(_records(path, text, separator, first_line))
 
 
@@ -64,8 +67,19 @@ def with_line_feeds(text: str) -> str:
     return text.replace("\r", "\n")
 
 
-def _separator(text: str) -> str:
-    header = _QUOTED.sub("", text[: text.find("\n") if "\n" in text else len(text)])
+def _separator(path: str, text: str) -> str:
+    """The separator of a text that begins with its header."""
+    widths: dict[str, set[int]] = {}
+    for mark in SEPARATORS:
+        try:
+            first = islice(_records(path, text, mark, 1), _LINES_TO_LOOK_AT)
+            widths[mark] = {len(record.cells) for record in first if not record.has_stray_quote}
+        except InputError:
+            continue
+    even = {mark: max(numbers) for mark, numbers in widths.items() if len(numbers) == 1 and max(numbers) > 1}
+    if even:
+        return max(even, key=lambda mark: even[mark])
+    header = _QUOTED.sub("", text.partition("\n")[0])
     return max(SEPARATORS, key=header.count)
 
 

@@ -82,7 +82,8 @@ class _Reader:
         self.items: list[Item] = resolve_items(self.table, self.mapping)
         self.rankings: list[ResolvedRanking] = resolve_rankings(self.table, self.mapping)
         self.parts: tuple[Item | ResolvedRanking, ...] = (*self.items, *self.rankings)
-        self.account = Account(self.table, self.mapping, tuple(self.items), tuple(self.rankings))
+        own_words = frozenset(self.form.defaults.words)
+        self.account = Account(self.table, self.mapping, tuple(self.items), tuple(self.rankings), own_words)
         left_out = [rule for rule in self.rules if not rule.rule.taken]
         kept = [row for row in self.table.rows if not any(rule.fires(row) for rule in left_out)]
         check_rows_are_chosen(self.table, kept, self.form, self.mapping)

@@ -27,8 +27,6 @@ class Form:
         Columns that a file of this form has; the more, the surer ``look`` is. ``*`` is a whole number.
     defaults : ConversionMap
         What this form always means; the rest has to be told.
-    answer : dict
-        Keys of every answer column that the user names, as in `data.convert.map.AnswerColumn`.
     ranking_cells : str
         What the cells of a ranking are, where the form says it: "modes" or "ranks".
     choose_rows : tuple of str
@@ -49,7 +47,6 @@ class Form:
     title: str
     columns: tuple[str, ...] = ()
     defaults: ConversionMap = field(default_factory=ConversionMap)
-    answer: dict[str, object] = field(default_factory=dict)
     ranking_cells: str = ""
     choose_rows: tuple[str, ...] = ()
     layout: Layout = field(default_factory=Layout)

@@ -87,8 +87,8 @@ class AnswerColumn(_Part):
     one_of: dict[str, Word] = {}
     """Columns of which exactly one holds 1, with what each means."""
     order: Order | None = None
-    answer_is: Literal["button", "item", ""] = "button"
-    """Whether an answer means what was shown on that side or the mode that is named there."""
+    answer_is: Literal["button", "item", ""] = ""
+    """Whether an answer means the button or the item behind it; needed where ``order`` may exchange them."""
     sides: Literal["known", "unknown"] = "known"
     renamed: tuple[Literal["left", "right"], ...] = ()
     """Sides whose cells do not name a mode unless ``modes`` says which."""

@@ -95,23 +95,30 @@ def _answers(
         answer.model_dump(mode="json", exclude_none=True, exclude_defaults=True) for answer in base.answers
     ]
     if options.answer:
-        answers = []
-        for text in options.answer:
-            column, _, question = text.rpartition("=") if "=" in text else (text, "", "")
-            answers.append({**form.answer, "column": column} | ({"question": question} if question else {}))
+        answers = [_answer(form, text) for text in options.answer]
     elif only_rankings:
         answers = []
-    elif not answers and form.answer:
-        answers = [dict(form.answer)]
     changes: dict[str, object] = {}
     for name in ("question", "question_column", "left", "right", "answer_is"):
         if (value := getattr(options, name)) is not None:
             changes[name] = value
+    if options.question is not None and options.question_column is None:
+        changes["question_column"] = ""
     if options.order is not None:
         column, values = next(iter(_equations("--order", [options.order]).items()))
         as_named, exchanged = _two("--order", column, values)
         changes["order"] = {"column": column, "as_named": [as_named], "exchanged": [exchanged]}
     return [{**answer, **changes} for answer in answers]
+
+
+def _answer(form: Form, text: str) -> dict[str, object]:
+    """An answer column, with the sides of the form's own if it has one."""
+    column, _, question = text.rpartition("=") if "=" in text else (text, "", "")
+    own = form.defaults.answers[:1]
+    answer = own[0].model_dump(mode="json", exclude_defaults=True) if own else {}
+    for name in ("always", "one_of", *(["question_column"] if question else [])):
+        answer.pop(name, None)
+    return answer | {"column": column} | ({"question": question} if question else {})
 
 
 def _ranking(form: Form, text: str) -> dict[str, object]:

@@ -102,7 +102,8 @@ def read_item(item: Item, row: Row, mapping: ConversionMap) -> Iterator[Preferen
             answer = chosen
         else:
             answer = SIDES.get(meaning) or meaning  # type: ignore[assignment]
-        left, right, answer, is_side_known = _ordered(item, row, left, right, answer)
+        is_item = meaning == CHOSEN or item.spec.always is not None or item.spec.answer_is == "item"
+        left, right, answer, is_side_known = _ordered(item, row, left, right, answer, is_item)
         yield Preference(column, question, left, right, answer, item.comparison, is_side_known, word)
 
 
@@ -232,19 +233,21 @@ def _chosen(item: Item, row: Row, left: str, right: str, mapping: ConversionMap)
     return "A>B" if mode == left else "B>A"
 
 
-def _ordered(item: Item, row: Row, left: str, right: str, answer: Answer) -> tuple[str, str, Answer, bool]:
-    """Modes and answer as shown, and whether that is known."""
+def _ordered(
+    item: Item, row: Row, left: str, right: str, answer: Answer, is_item: bool
+) -> tuple[str, str, Answer, bool]:
+    """Modes and answer as shown, and whether that is known; ``is_item``: the answer names a mode."""
     order = item.spec.order
     if order is None or item.order is None:
         return left, right, answer, item.spec.sides == "known"
-    if not item.spec.answer_is:
+    if not item.spec.answer_is and not is_item:
         raise MissingMeaningError("answer_is", item.source.name, item.source.text(row) or "")
     text = item.order.text(row) or ""
     if text in order.as_named:
         return left, right, answer, True
     if text in order.exchanged:
-        return right, left, MIRRORED[answer] if item.spec.answer_is == "item" else answer, True
-    if item.spec.answer_is == "item":
+        return right, left, MIRRORED[answer] if is_item else answer, True
+    if is_item:
         return left, right, answer, False
     raise RowProblem(
         f"{row.where}, {item.order.name}: {shown(text)!r} is not one of: "

@@ -333,3 +333,65 @@ def test_a_converted_file_is_reported(tmp_path: Path) -> None:
         worth = {row["mode"]: float(row["worth_mean"]) for row in csv.DictReader(file)}
     assert max(worth, key=lambda mode: worth[mode]) == "M1"
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranked"] is True
+
+
+def test_an_order_column_needs_to_know_what_an_answer_names(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "in.csv"
+    path.write_text("who,l,r,answer,flip\np,M1,M2,x,0\nq,M1,M2,x,1\n", encoding="utf-8")
+    options = [*TABLE, *WORDS, "--order", "flip=0,1"]
+    assert convert(path, *options) == 2
+    assert "answer: x: nothing says whether these name the button or the item" in capsys.readouterr().err
+    assert convert(path, *options, "--answer-is", "button") == 0
+    assert responses(path) == [("p", "M1", "M2", "A>B"), ("q", "M2", "M1", "A>B")]
+    assert convert(path, *options, "--answer-is", "item") == 0
+    assert responses(path) == [("p", "M1", "M2", "A>B"), ("q", "M2", "M1", "B>A")]
+
+
+def test_a_comma_in_the_header_of_a_file_with_semicolons_is_text(tmp_path: Path) -> None:
+    path = tmp_path / "in.csv"
+    path.write_text("who, really, or not;l;r;answer\np;M1;M2;x\n", encoding="utf-8")
+    options = [*TABLE[:2], "--participant", "who, really, or not", *TABLE[4:], *WORDS]
+    assert convert(path, *options) == 0
+    assert responses(path) == [("p", "M1", "M2", "A>B")]
+
+
+def test_a_named_question_takes_the_place_of_the_forms_own_column(tmp_path: Path) -> None:
+    out = tmp_path / "out.csv"
+    options = ["--from", "place-pulse", "--question", "nicer", "--out", str(out)]
+    assert run(["convert", str(FORMS / "left_right_equal.csv"), *options]) == 0
+    with out.open(newline="", encoding="utf-8") as file:
+        assert {row["question"] for row in csv.DictReader(file)} == {"nicer"}
+
+
+def test_words_and_pairs_that_do_not_occur_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = table(tmp_path, "p,M1,M2,x")
+    assert convert(path, *TABLE, *WORDS, "--pair", "pair9=M1,M2") == 0
+    printed = capsys.readouterr().out
+    assert "not in the responses: words y, z" in printed
+    assert "not in the responses: pairs pair9" in printed
+    assert "modes: M1 (1), M2 (1)" in printed
+
+
+def test_a_map_keeps_that_nobody_is_named_where_the_form_has_a_person(tmp_path: Path) -> None:
+    first, second, kept = tmp_path / "first.csv", tmp_path / "second.csv", tmp_path / "map.toml"
+    file = str(FORMS / "arena_battles.jsonl")
+    options = ["--from", "arena", "--participant", "none", "--write-map", str(kept)]
+    assert run(["convert", file, *options, "--out", str(first)]) == 0
+    assert run(["convert", file, "--map", str(kept), "--out", str(second)]) == 0
+    assert "participant" not in first.read_text(encoding="utf-8").splitlines()[0]
+    assert second.read_bytes() == first.read_bytes()
+
+
+def test_equal_ranks_are_a_tie_and_gaps_between_ranks_say_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "in.csv"
+    path.write_text("who,M1,M2,M3\np,2,2,7\n", encoding="utf-8")
+    (tmp_path / "map.toml").write_text(
+        'form = "table"\nparticipant = "who"\nrankings = [{ columns = ["M1", "M2", "M3"], cells = "ranks" }]\n',
+        encoding="utf-8",
+    )
+    assert convert(path, "--map", str(tmp_path / "map.toml")) == 0
+    assert responses(path) == [("p", "M1", "M2", "A=B"), ("p", "M1", "M3", "A>B"), ("p", "M2", "M3", "A>B")]

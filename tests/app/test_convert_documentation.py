@@ -19,9 +19,7 @@ def test_every_command_of_the_page_is_a_tested_case_and_every_form_has_one() -> 
     blocks = re.findall(r"```sh\n(elbowroom convert .*?)```", PAGE.partition("## The forms")[2], re.DOTALL)
     shown = [shlex.split(block.replace("\\\n", " ")) for block in blocks]
     tested = {
-        tuple(
-            ["elbowroom", "convert", *case.files, "--from", case.form, *shlex.split(case.options)]
-        ): case.right
+        ("elbowroom", "convert", *case.files, "--from", case.form, *shlex.split(case.options)): case.right
         for case in CASES
         if case.right
     }

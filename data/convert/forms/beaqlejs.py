@@ -47,12 +47,12 @@ FORM = Form(
                 column=PREFERENCE,
                 pair="TestID",
                 order=Order(column="PresentationOrder", as_named=("A=A, B=B",), exchanged=("A=B, B=A",)),
-                answer_is="",
             ),
         ),
         words={"A": "A", "B": "B", "(skipped)": "none: skipped", "(not shown)": "none: not shown"},
     ),
     prepare=_with_listeners,
     tell="files A and B of each test (--pair TEST=A,B), and whether Preference is the button or the file "
-    "(--answer-is button or item); BeaqleJS itself writes the button",
+    "(--answer-is button or item); BeaqleJS itself writes the button; "
+    "of listeners without a name: --participant @file",
 )

@@ -9,9 +9,7 @@ FORM = Form(
     columns=("judgeId", "chosen", "notChosen", "isLeft", "exclude"),
     defaults=ConversionMap(
         participant="judgeId",
-        answers=(
-            AnswerColumn(left="chosen", right="notChosen", always="A>B", answer_is="item", sides="unknown"),
-        ),
+        answers=(AnswerColumn(left="chosen", right="notChosen", always="A>B", sides="unknown"),),
         rows=(RowRule(column="exclude", without=("TRUE",), reason="excluded", optional=True),),
     ),
     tell="nothing; if you know that isLeft is the side of the chosen one: --order isLeft=TRUE,FALSE",
