@@ -57,6 +57,7 @@ def cautions(
     quality = quality or DataQuality()
     said = [
         *_about_the_source(table, study),
+        *unknown_sides(table, fit.settings.side_effect),
         *unequal_delays(quality.delays),
         *_about_the_number(fit),
         *_about_the_unanswered(fit, study),
@@ -72,6 +73,20 @@ def cautions(
         *_about_convergence(fit),
     ]
     return tuple(dict.fromkeys(said))
+
+
+def unknown_sides(table: ResponseTable, has_side_effect: bool) -> list[str]:
+    """What a side effect means where a converted file does not say what was shown as A (column ``sides``)."""
+    if not has_side_effect or "sides" not in table.rows:
+        return []
+    total = int(table.rows["count"].sum())
+    unknown = int(table.rows.loc[table.rows["sides"] == "unknown", "count"].sum())
+    if not unknown:
+        return []
+    return [
+        f"For {unknown:,} of {total:,} answers it is unknown which mode was shown as A: there the side effect "
+        "is about the order of the modes in the file. --no-side-effect leaves it out."
+    ]
 
 
 def unanswered(fit: Fit, study: Study | None) -> tuple[str, ...]:

@@ -8,8 +8,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from analysis.report.cautions import unknown_sides
 from app.cli.main import run
 from data.answers import ANSWERS, SCALES
+from data.response_csv import read_response_csv
 
 FORMS = Path(__file__).resolve().parents[1] / "reference" / "forms"
 TABLE = ["--from", "table", "--participant", "who", "--left", "l", "--right", "r", "--answer", "answer"]
@@ -376,13 +378,17 @@ def test_words_and_pairs_that_do_not_occur_are_named(
     assert "modes: M1 (1), M2 (1)" in printed
 
 
-def test_a_map_keeps_that_nobody_is_named_where_the_form_has_a_person(tmp_path: Path) -> None:
-    first, second, kept = tmp_path / "first.csv", tmp_path / "second.csv", tmp_path / "map.toml"
-    file = str(FORMS / "arena_battles.jsonl")
-    options = ["--from", "arena", "--participant", "none", "--write-map", str(kept)]
-    assert run(["convert", file, *options, "--out", str(first)]) == 0
-    assert run(["convert", file, "--map", str(kept), "--out", str(second)]) == 0
-    assert "participant" not in first.read_text(encoding="utf-8").splitlines()[0]
+def test_a_map_keeps_what_it_takes_away_from_the_form(tmp_path: Path) -> None:
+    """Votes with visible names are taken, and nobody is named, although the form has both otherwise."""
+    first, second, kept = tmp_path / "first.csv", tmp_path / "second.csv", tmp_path / "kept.toml"
+    (tmp_path / "map.toml").write_text('form = "arena"\nrows = []\nkeep = []\n', encoding="utf-8")
+    command = ["convert", str(FORMS / "arena_battles.jsonl")]
+    options = ["--map", str(tmp_path / "map.toml"), "--participant", "none", "--write-map", str(kept)]
+    assert run([*command, *options, "--out", str(first)]) == 0
+    assert run([*command, "--map", str(kept), "--out", str(second)]) == 0
+    lines = first.read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "question,mode_a,mode_b,response,line"
+    assert len(lines) == 1 + 6
     assert second.read_bytes() == first.read_bytes()
 
 
@@ -390,8 +396,20 @@ def test_equal_ranks_are_a_tie_and_gaps_between_ranks_say_nothing(tmp_path: Path
     path = tmp_path / "in.csv"
     path.write_text("who,M1,M2,M3\np,2,2,7\n", encoding="utf-8")
     (tmp_path / "map.toml").write_text(
-        'form = "table"\nparticipant = "who"\nrankings = [{ columns = ["M1", "M2", "M3"], cells = "ranks" }]\n',
+        'form = "table"\nparticipant = "who"\n[[rankings]]\ncolumns = ["M1", "M2", "M3"]\ncells = "ranks"\n',
         encoding="utf-8",
     )
     assert convert(path, "--map", str(tmp_path / "map.toml")) == 0
-    assert responses(path) == [("p", "M1", "M2", "A=B"), ("p", "M1", "M3", "A>B"), ("p", "M2", "M3", "A>B")]
+    assert [answer for *_, answer in responses(path)] == ["A=B", "A>B", "A>B"]
+
+
+def test_the_report_cautions_of_a_side_effect_where_sides_are_unknown(tmp_path: Path) -> None:
+    ranked, voted = tmp_path / "ranked.csv", tmp_path / "voted.csv"
+    survey, votes = str(FORMS / "limesurvey.csv"), str(FORMS / "arena_battles.jsonl")
+    assert run(["convert", survey, "--from", "limesurvey", "--ranking", "rank[*]", "--out", str(ranked)]) == 0
+    assert run(["convert", votes, "--from", "arena", "--out", str(voted)]) == 0
+    (caution,) = unknown_sides(read_response_csv(ranked), has_side_effect=True)
+    assert "For 7 of 7 answers it is unknown which mode was shown as A" in caution
+    assert "--no-side-effect" in caution
+    assert unknown_sides(read_response_csv(ranked), has_side_effect=False) == []
+    assert unknown_sides(read_response_csv(voted), has_side_effect=True) == []
