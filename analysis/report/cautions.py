@@ -76,7 +76,7 @@ def cautions(
 
 
 def unknown_sides(table: ResponseTable, has_side_effect: bool) -> list[str]:
-    """What a side effect means where a converted file does not say what was shown as A (column ``sides``)."""
+    """What a side effect means where a file does not say what was shown as A (column ``sides``)."""
     if not has_side_effect or "sides" not in table.rows:
         return []
     total = int(table.rows["count"].sum())

@@ -7,6 +7,7 @@ Layout as in JATOS 3.8 and later: ``study_result_N/comp-result_M/data.txt``, and
 import io
 import json
 import zipfile
+import zlib
 from collections.abc import Iterator
 
 from data.convert.json_records import JsonRecord, json_records
@@ -14,17 +15,24 @@ from data.errors import InputError
 
 RESULT, WORKER, URL = "@study_result", "@worker_type", "@url"
 """Columns: number of the study result, type of its worker, JSON of the study link's URL parameters."""
+_BROKEN = (zipfile.BadZipFile, zlib.error, OSError, EOFError, RuntimeError)
+"""What a damaged, encrypted or unusual archive raises; ``NotImplementedError`` is a ``RuntimeError``."""
 _LARGEST = 2**31
 """Most bytes that an unpacked file may have."""
 
 
-def is_results_archive(content: bytes) -> bool:
-    """Whether a zip holds JATOS results."""
+def archive_names(content: bytes) -> tuple[str, ...]:
+    """The names of the files in a zip; none if it is damaged."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            return "metadata.json" in archive.namelist()
-    except (zipfile.BadZipFile, OSError):
-        return False
+            return tuple(archive.namelist())
+    except (ValueError, *_BROKEN):
+        return ()
+
+
+def is_results_archive(content: bytes) -> bool:
+    """Whether a zip holds JATOS results."""
+    return "metadata.json" in archive_names(content)
 
 
 def archive_records(path: str, content: bytes) -> list[JsonRecord]:
@@ -69,6 +77,8 @@ def _members(path: str, archive: zipfile.ZipFile) -> Iterator[tuple[dict[str, ob
             for result in results
             for part in result["componentResults"]
         ]
+    except _BROKEN as error:
+        raise InputError(f"{path}: metadata.json cannot be unpacked: {error}") from None
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{path}: metadata.json is not that of JATOS results: {error!r}") from None
     yield from parts
@@ -82,5 +92,5 @@ def _read(path: str, archive: zipfile.ZipFile, member: str) -> str:
         raise InputError(f"{path}/{member}: larger than {_LARGEST} bytes")
     try:
         return archive.read(member).decode("utf-8-sig")
-    except (UnicodeDecodeError, zipfile.BadZipFile, RuntimeError) as error:
+    except (ValueError, *_BROKEN) as error:
         raise InputError(f"{path}/{member}: cannot be read: {error}") from None

@@ -1,12 +1,10 @@
 """A file of any container as a table: CSV, JSON, a spreadsheet, an archive of results."""
 
-import io
-import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from data.convert.archive import archive_records, is_results_archive
+from data.convert.archive import archive_names, archive_records, is_results_archive
 from data.convert.delimited import Record, records
 from data.convert.json_records import json_records, json_table
 from data.convert.spreadsheet import spreadsheet_records
@@ -60,7 +58,9 @@ def read_table(path: Path, layout: Layout, sheet: str = "") -> Table:
         if is_results_archive(content):
             return _with_file(path, json_table(name, archive_records(name, content)))
         if not _is_spreadsheet(content):
-            raise InputError(f"{name}: a zip archive of other files: unpack it and convert the file in it")
+            raise InputError(
+                f"{name}: a damaged zip archive, or one of other files: unpack it and convert those"
+            )
         return _with_file(path, _tabular(name, spreadsheet_records(name, content, sheet), layout))
     text = _text(name, content)
     if text.lstrip().startswith(("[", "{")):
@@ -174,9 +174,4 @@ def _text(path: str, content: bytes) -> str:
 def _is_spreadsheet(content: bytes) -> bool:
     if not content.startswith(b"PK"):
         return True
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            names = archive.namelist()
-    except (zipfile.BadZipFile, OSError):
-        return False
-    return any(name.startswith("xl/") or name == "content.xml" for name in names)
+    return any(name.startswith("xl/") or name == "content.xml" for name in archive_names(content))

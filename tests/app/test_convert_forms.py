@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from app.cli.main import run
 from data.answers import MIRRORED
@@ -135,3 +137,34 @@ def refuses(
 def test_look_names_the_form(case: Case, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["convert", case.paths[0], "--from", "look"]) == 0
     assert f"--from {case.form}" in capsys.readouterr().out.splitlines()[0]
+
+
+@given(
+    case=st.sampled_from(CASES),
+    place=st.floats(0, 1, exclude_max=True),
+    removed=st.integers(0, 30),
+    inserted=st.sampled_from(
+        [b"", b'"', b",", b";", b"\n", b"\r", b"{", b"[", b"]", b"\0", b"\xff", b"-", b"*"]
+    ),
+)
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+def test_a_damaged_file_is_converted_or_refused_in_one_line(
+    case: Case,
+    place: float,
+    removed: int,
+    inserted: bytes,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    content = Path(case.paths[0]).read_bytes()
+    at = int(place * len(content))
+    damaged = tmp_path / case.files[0]
+    damaged.write_bytes(content[:at] + inserted + content[at + removed :])
+    out = tmp_path / "responses.csv"
+    out.unlink(missing_ok=True)
+    options = ["--from", case.form, *shlex.split(case.options), "--out", str(out)]
+    code = run(["convert", str(damaged), *case.paths[1:], *options])
+    printed = capsys.readouterr()
+    assert code in (0, 2)
+    assert out.exists() == (code == 0)
+    assert printed.err.count("\n") == (1 if code == 2 else 0)

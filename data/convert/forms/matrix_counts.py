@@ -17,7 +17,7 @@ def _labelled(table: Table) -> tuple[tuple[str, ...], int]:
     for before in (0, 1):
         modes = names[before:]
         rows_agree = before == 0 or tuple((row.cells[0] or "").strip() for row in table.rows) == modes
-        if len(modes) == len(table.rows) and all(modes) and rows_agree:
+        if len(modes) == len(table.rows) > 0 and all(modes) and rows_agree:
             return modes, before
     raise InputError(
         f"{table.path}: {len(table.rows)} rows under {listed(names)}: a matrix has as many rows as modes, "
