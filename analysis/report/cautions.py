@@ -84,8 +84,8 @@ def unknown_sides(table: ResponseTable, has_side_effect: bool) -> list[str]:
     if not unknown:
         return []
     return [
-        f"For {unknown:,} of {total:,} answers it is unknown which mode was shown as A: there the side effect "
-        "is about the order of the modes in the file. --no-side-effect leaves it out."
+        f"For {unknown:,} of {total:,} answers it is unknown which mode was shown as A: there the side "
+        "effect is about the order of the modes in the file. --no-side-effect leaves it out."
     ]
 
 
