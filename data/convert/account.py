@@ -9,7 +9,7 @@ from data.convert.rankings import ResolvedRanking
 from data.convert.reading_answers import NoAnswer, Preference
 from data.convert.rows import Reason
 from data.convert.table import MOST_SHOWN, Row, Table, counted, listed
-from data.csv_file import shown
+from data.labels import plain_or_quoted
 
 
 @dataclass
@@ -62,7 +62,7 @@ class Account:
 
     def no_answer(self, outcome: NoAnswer, row: Row, who: str) -> None:
         """Count an answer that is none, in a row that counts."""
-        column = f" in {shown(outcome.column)}" if outcome.column else ""
+        column = f" in {plain_or_quoted(outcome.column)}" if outcome.column else ""
         self._add(self._answers, Reason(f"{column}: {outcome.reason}"), row, 1, who)
 
     def _add(self, tallies: dict[str, _Tally], reason: Reason, row: Row, answers: int, who: str = "") -> None:
@@ -118,8 +118,10 @@ class Account:
             words.setdefault(preference.column, Counter())[preference.word, preference.response] += 1
         for item in self._items:
             meanings = words.get(item.source.name, Counter()).most_common(MOST_SHOWN)
-            read = ", ".join(f"{shown(word)} = {answer} ({n})" for (word, answer), n in sorted(meanings))
-            lines.append(f"{shown(item.source.name)}: {self._item(item)}; {read or 'no response'}")
+            read = ", ".join(
+                f"{plain_or_quoted(word)} = {answer} ({n})" for (word, answer), n in sorted(meanings)
+            )
+            lines.append(f"{plain_or_quoted(item.source.name)}: {self._item(item)}; {read or 'no response'}")
         for ranking in self._rankings:
             columns = listed(column.name for column in ranking.columns)
             modes = listed(ranking.modes)
@@ -144,7 +146,7 @@ class Account:
         """How an item is read: its question and its sides."""
         question = f"column {item.question.name}" if item.question else item.spec.question
         if item.left and item.right:
-            sides = f"left in {shown(item.left.name)}, right in {shown(item.right.name)}"
+            sides = f"left in {plain_or_quoted(item.left.name)}, right in {plain_or_quoted(item.right.name)}"
         elif item.pair:
             sides = f"left and right by {item.pair.name}"
         else:
@@ -197,5 +199,5 @@ def _tie_lines(preferences: list[Preference]) -> list[str]:
     ties = Counter(preference.word for preference in preferences if preference.response == "A=B")
     if len(ties) < 2:
         return []
-    words = ", ".join(f"{n} {shown(word)}" for word, n in ties.items())
+    words = ", ".join(f"{n} {plain_or_quoted(word)}" for word, n in ties.items())
     return [f"ties: {ties.total()}, of which {words}"]

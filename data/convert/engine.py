@@ -16,8 +16,8 @@ from data.convert.reading import FILE, read_tables
 from data.convert.reading_answers import MissingMeaningError, NoAnswer, Preference, RowProblem, read_item
 from data.convert.rows import Reason, check_rows_are_chosen, filled_down, resolve_rules
 from data.convert.table import Column, Row, Table, counted
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted
 
 
 @dataclass(frozen=True)
@@ -212,8 +212,8 @@ class _Reader:
             first = self._keys.setdefault(key, row)
             if first is not row:
                 raise InputError(
-                    f"{row.where}: {shown(person)} answered {preference.question} of {comparison} already in "
-                    f"{first.where}: leave one out, such as --leave-out {row.line}"
+                    f"{row.where}: {plain_or_quoted(person)} answered {preference.question} of {comparison} "
+                    f"already in {first.where}: leave one out, such as --leave-out {row.line}"
                 )
         kept = tuple(column.text(row) or "" for column in self.kept_columns)
         count = self.count.text(row) if self.count else None

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from data.convert.map import AnswerColumn, ConversionMap
 from data.convert.table import Column, Table, listed, plain
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def _expanded(table: Table, spec: AnswerColumn, mapping: ConversionMap) -> list[
     numbers = table.matches(pattern)
     if not numbers:
         raise InputError(
-            f"{table.path}: no column is named {shown(pattern)} with a whole number for *; "
+            f"{table.path}: no column is named {plain_or_quoted(pattern)} with a whole number for *; "
             f"columns: {table.labels}"
         )
     items = []
@@ -128,8 +128,8 @@ def _check_sides(table: Table, item: Item) -> None:
         return
     name = item.source.name
     seen = dict.fromkeys(text for row in table.rows if (text := item.source.text(row)))
-    by_pair = f", or by --pair {shown(item.keys[0])}=LEFT,RIGHT" if item.keys[0] else ""
+    by_pair = f", or by --pair {plain_or_quoted(item.keys[0])}=LEFT,RIGHT" if item.keys[0] else ""
     raise InputError(
-        f"{table.path}: {shown(name)} ({listed(seen)}): nothing says which two modes were compared; tell it "
-        f"by --left COLUMN and --right COLUMN{by_pair}; columns: {table.labels}"
+        f"{table.path}: {plain_or_quoted(name)} ({listed(seen)}): nothing says which two modes were compared; "
+        f"tell it by --left COLUMN and --right COLUMN{by_pair}; columns: {table.labels}"
     )

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from data.convert.table import Cell, Row, Table, decoder, json_text, plain
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted
 
 ARRAY = "@array"
 """Column with the number of the array, from 1, that a record stands in; empty outside of arrays."""
@@ -105,7 +105,7 @@ class _Places:
         except RecursionError:
             raise self.error(at, "nested too deeply") from None
         if not isinstance(value, dict):
-            raise self.error(at, f"{shown(self.text[at:end])} where an object is needed")
+            raise self.error(at, f"{plain_or_quoted(self.text[at:end])} where an object is needed")
         return value, end
 
     def behind_element(self, at: int) -> int:

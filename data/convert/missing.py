@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from data.convert.items import Item
 from data.convert.reading_answers import MissingMeaningError, is_number
 from data.convert.table import Row, Table, listed
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted
 
 _ASKS = {
     "word": "nothing says what these mean; tell each by --word {first}=ANSWER: A (left preferred), B, "
@@ -35,7 +35,7 @@ class MissingMeanings:
         """Raise for what is missing first, with all its values and the others in the same columns."""
         for what, columns in self._missing.items():
             values = sorted({value for column in columns.values() for value in column})
-            ask = _ASKS[what].format(first=shown(values[0]))
+            ask = _ASKS[what].format(first=plain_or_quoted(values[0]))
             if what == "word" and all(is_number(value) for value in values):
                 ask += _OR_NUMBERS
             others = [value for value in self._seen(set(columns)) if value not in values]

@@ -9,8 +9,8 @@ from data.answers import Answer
 from data.convert.map import ConversionMap, Ranking
 from data.convert.reading_answers import NoAnswer, Preference, RowProblem
 from data.convert.table import Column, Row, Table, listed, plain
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted, quoted
 
 _RANK = re.compile(r"\d+([.,]0+)?")
 
@@ -92,7 +92,9 @@ def _ranks(ranking: ResolvedRanking, row: Row, texts: list[str | None]) -> dict[
         if not text or text in ranking.spec.unranked:
             continue
         if not _RANK.fullmatch(text):
-            raise RowProblem(f"{row.where}, {shown(column.name)}: {shown(text)!r} is not a rank (1, 2, ...)")
+            raise RowProblem(
+                f"{row.where}, {plain_or_quoted(column.name)}: {quoted(text)} is not a rank (1, 2, ...)"
+            )
         ranks[mode] = float(text.replace(",", "."))
     return ranks
 
@@ -106,6 +108,6 @@ def _places(
             continue
         mode = mapping.modes.get(text, text)
         if mode in places:
-            raise RowProblem(f"{row.where}, {shown(column.name)}: {shown(mode)!r} is ranked twice")
+            raise RowProblem(f"{row.where}, {plain_or_quoted(column.name)}: {quoted(mode)} is ranked twice")
         places[mode] = place
     return places

@@ -8,8 +8,8 @@ from data.answers import MIRRORED, SCALES, Answer
 from data.convert.items import Item
 from data.convert.map import CHOSEN, SIDES, ConversionMap, reason_of_none
 from data.convert.table import Cell, Column, Row, json_text, parse_json
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted, quoted
 
 _NUMBER = re.compile(r"[-+−]?\d+([.,]\d+)?")
 _WHOLE = re.compile(r"[-+−]?\d+([.,]0+)?")
@@ -89,7 +89,7 @@ def read_item(item: Item, row: Row, mapping: ConversionMap) -> Iterator[Preferen
         left, right = _modes(item, row, mapping)
         if left == right:
             raise RowProblem(
-                f"{row.where}, {column}: {shown(left)!r} against itself: "
+                f"{row.where}, {column}: {quoted(left)} against itself: "
                 f"leave such rows out by --leave-out same-mode, or this one by --leave-out {row.line}",
                 "same-mode",
             )
@@ -144,7 +144,7 @@ def _ticked(item: Item, row: Row) -> str:
 
 def _empty(item: Item, row: Row, word: Cell, mapping: ConversionMap) -> NoAnswer:
     if item.other is not None and item.other.text(row):
-        return NoAnswer(item.source.name, f'"other": a text in {shown(item.other.name)}')
+        return NoAnswer(item.source.name, f'"other": a text in {plain_or_quoted(item.other.name)}')
     if word is None and mapping.unquoted_is_not_asked:
         return NoAnswer(item.source.name, "", is_empty=True)
     return NoAnswer(item.source.name, mapping.empty, is_empty=True)
@@ -227,9 +227,7 @@ def _chosen(item: Item, row: Row, left: str, right: str, mapping: ConversionMap)
         return None
     mode = mapping.modes.get(text, text)
     if mode not in (left, right):
-        raise RowProblem(
-            f"{row.where}, {item.chosen.name}: {shown(text)!r} is neither {left!r} nor {right!r}"
-        )
+        raise RowProblem(f"{row.where}, {item.chosen.name}: {quoted(text)} is neither {left!r} nor {right!r}")
     return "A>B" if mode == left else "B>A"
 
 
@@ -250,6 +248,6 @@ def _ordered(
     if is_item:
         return left, right, answer, False
     raise RowProblem(
-        f"{row.where}, {item.order.name}: {shown(text)!r} is not one of: "
+        f"{row.where}, {item.order.name}: {quoted(text)} is not one of: "
         f"{', '.join((*order.as_named, *order.exchanged))}"
     )

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from data.convert.form import Form
 from data.convert.map import ConversionMap, RowRule
 from data.convert.table import Column, Row, Table, listed
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,9 @@ class ResolvedRule:
         per = self.per.text(row) if self.per else None
         if self.rule.reason:
             return Reason(self.rule.reason, self.column.name, value, self.rule.per, per)
-        return Reason(f"{self.column.name} = {shown(value)}", per_column=self.rule.per, per_value=per)
+        return Reason(
+            f"{self.column.name} = {plain_or_quoted(value)}", per_column=self.rule.per, per_value=per
+        )
 
 
 def resolve_rules(table: Table, mapping: ConversionMap) -> list[ResolvedRule]:

@@ -5,8 +5,8 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from data.csv_file import shown
 from data.errors import InputError
+from data.labels import plain_or_quoted, quoted
 
 Cell = str | None
 """A cell's text; None where the file has nothing at all, unlike "", which was written."""
@@ -82,7 +82,7 @@ class Table:
         if len(places) > 1:
             numbers = listed(f"#{place + 1}" for place in places)
             raise InputError(
-                f"{self.path}: {shown(reference)}: several columns have that name; write {numbers}"
+                f"{self.path}: {plain_or_quoted(reference)}: several columns have that name; write {numbers}"
             )
         if places:
             return Column(reference, places[0])
@@ -105,7 +105,9 @@ class Table:
         """
         column = self.find(reference)
         if column is None:
-            raise InputError(f"{self.path}: the column {shown(reference)} is missing; columns: {self.labels}")
+            raise InputError(
+                f"{self.path}: the column {plain_or_quoted(reference)} is missing; columns: {self.labels}"
+            )
         return column
 
     def matches(self, pattern: str) -> list[str]:
@@ -145,7 +147,7 @@ class Column:
 
     def error(self, row: Row, message: str) -> InputError:
         """The error for a cell."""
-        return InputError(f"{row.where}, {shown(self.name)}: {message}")
+        return InputError(f"{row.where}, {plain_or_quoted(self.name)}: {message}")
 
 
 def plain(name: str) -> str:
@@ -155,7 +157,7 @@ def plain(name: str) -> str:
 
 def listed(texts: Iterable[str], most: int = MOST_SHOWN) -> str:
     """Texts on one line, the first ``most`` of them."""
-    every = [shown(plain(text)) or "(empty)" for text in texts]
+    every = [plain_or_quoted(name) if (name := plain(text)) else "(empty)" for text in texts]
     rest = f" and {len(every) - most} more" if len(every) > most else ""
     return ", ".join(every[:most]) + rest
 
@@ -178,7 +180,7 @@ def parse_json(text: str, where: str) -> object:
     try:
         return _DECODER.decode(text)
     except (ValueError, RecursionError):
-        raise InputError(f"{where}: {shown(text)!r} is not JSON") from None
+        raise InputError(f"{where}: {quoted(text)} is not JSON") from None
 
 
 def json_text(value: object) -> Cell:
