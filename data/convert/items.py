@@ -128,8 +128,9 @@ def _check_sides(table: Table, item: Item) -> None:
         return
     name = item.source.name
     seen = dict.fromkeys(text for row in table.rows if (text := item.source.text(row)))
+    values = listed(seen)
     by_pair = f", or by --pair {plain_or_quoted(item.keys[0])}=LEFT,RIGHT" if item.keys[0] else ""
     raise InputError(
-        f"{table.path}: {plain_or_quoted(name)} ({listed(seen)}): nothing says which two modes were compared; "
+        f"{table.path}: {plain_or_quoted(name)} ({values}): nothing says which two modes were compared; "
         f"tell it by --left COLUMN and --right COLUMN{by_pair}; columns: {table.labels}"
     )
