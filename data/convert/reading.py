@@ -39,10 +39,13 @@ class Layout:
         The header from the file's first records.
     footer : str
         Text of the last line, one cell alone; a file without it is cut off.
+    mend : callable
+        Changes the text of a file whose quotation marks are not those of CSV.
     """
 
     header: Callable[[Sequence[Record]], Header] = one_header_row
     footer: str = ""
+    mend: Callable[[str], str] = str
 
 
 def read_table(path: Path, layout: Layout, sheet: str = "") -> Table:
@@ -65,7 +68,7 @@ def read_table(path: Path, layout: Layout, sheet: str = "") -> Table:
     text = _text(name, content)
     if text.lstrip().startswith(("[", "{")):
         return _with_file(path, json_table(name, json_records(name, text)))
-    return _with_file(path, _tabular(name, records(name, text), layout))
+    return _with_file(path, _tabular(name, records(name, layout.mend(text)), layout))
 
 
 def read_head(path: Path, sheet: str = "") -> Table:
