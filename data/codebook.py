@@ -1,14 +1,15 @@
 """What each column of an export means: made from the store's tables, which say it once."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import Column as SqlColumn
 from sqlalchemy import Table
-from sqlalchemy.types import Boolean, Integer
+from sqlalchemy.types import Boolean, Integer, Text
 
 from data.answers import SCALES
+from data.metric_meanings import meaning_of
 from data.store import tables
 from data.store.tables import Real, UtcTime
 from data.study import Study
@@ -62,40 +63,17 @@ class Sheet:
         return f"{self.name}.csv"
 
 
-_SUFFIXES = (
-    ("_m_s3", "m/s3"),
-    ("_m_s2", "m/s2"),
-    ("_m_s", "m/s"),
-    ("_rad_s", "rad/s"),
-    ("_deg", "deg"),
-    ("_rad", "rad"),
-    ("_nm", "N m"),
-    ("_ns", "N s"),
-    ("_n", "N"),
-    ("_m", "m"),
-    ("_s", "s"),
-    ("_hz", "Hz"),
-    ("_j", "J"),
-    ("_ms", "ms"),
-)
-
-
-def unit_in(name: str) -> str:
-    """The unit that a metric's name ends with, or ""."""
-    return next((unit for suffix, unit in _SUFFIXES if name.endswith(suffix)), "")
-
-
 def sheets_of(
-    study: Study, metrics: Sequence[str], background: Sequence[str], pooled: bool = False
+    study: Study, metrics: Mapping[str, str], background: Mapping[str, str], pooled: bool = False
 ) -> tuple[Sheet, ...]:
     """The CSV files of a study's export.
 
     Parameters
     ----------
-    metrics : sequence of str
-        Names of the metrics that any trial has; each becomes a column.
-    background : sequence of str
-        Names of the background questions that any participant answered.
+    metrics : mapping of str to str
+        Names of the metrics that any trial has, with the column of each.
+    background : mapping of str to str
+        Names of the background questions that any participant answered, with the column of each.
     pooled : bool
         True if it is not known who gave which response: the responses then name no participant.
     """
@@ -106,8 +84,8 @@ def sheets_of(
             tables.participants,
             "One row a participant",
             [
-                Field(column_name("background", b), f"Background: {b}", "string", is_required=False)
-                for b in background
+                Field(column, f"Background: {name}", "string", is_required=False)
+                for name, column in background.items()
             ],
             leave_out=("study", "background"),
         ),
@@ -138,8 +116,8 @@ def sheets_of(
             tables.trials,
             "One row a trial: a run at the maze under one condition",
             [
-                Field(column_name("metric", m), f"Metric {m}", "number", unit_in(m), is_required=False)
-                for m in metrics
+                Field(column, meaning_of(name).meaning, "number", meaning_of(name).unit, is_required=False)
+                for name, column in metrics.items()
             ],
             leave_out=("metrics",),
         ),
@@ -169,9 +147,23 @@ def sheets_of(
     )
 
 
-def column_name(prefix: str, name: str) -> str:
-    """A CSV column's name for something that people named."""
-    return f"{prefix}_{re.sub(r'[^A-Za-z0-9_]+', '_', name)}"
+def column_names(prefix: str, names: Iterable[str], table: Table) -> dict[str, str]:
+    """A CSV column of its own for each thing that people named: letters, digits and underscores only.
+
+    Names that come to the same column, whatever their case, or to one that the table has anyway, are told
+    apart by a number.
+    """
+    columns: dict[str, str] = {}
+    used = {column.name for column in table.columns}
+    for name in names:
+        plain = column = f"{prefix}_{re.sub(r'[^A-Za-z0-9_]+', '_', name)}"
+        again = 1
+        while column.lower() in used:
+            again += 1
+            column = f"{plain}_{again}"
+        used.add(column.lower())
+        columns[name] = column
+    return columns
 
 
 def _sheet(table: Table, meaning: str, more: Sequence[Field] = (), leave_out: tuple[str, ...] = ()) -> Sheet:
@@ -192,7 +184,8 @@ def _field(column: "SqlColumn[object]") -> Field:
         _type(column),
         column.info.get("unit", ""),
         tuple(column.info.get("valid", ())),
-        not column.nullable,
+        # A free text may be empty, which a CSV file cannot tell from a missing one.
+        not column.nullable and not isinstance(column.type, Text),
     )
 
 

@@ -14,10 +14,12 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from data.codebook import Field, Sheet, codebook, column_name, sheets_of
+from data.codebook import Field, Sheet, codebook, column_names, sheets_of
+from data.data_package import data_package
+from data.dataset_description import dataset_description
 from data.errors import ElbowroomError
 from data.locations import writing_folder
-from data.store import Store, StoredStudy
+from data.store import Store, StoredStudy, tables
 from data.store.snapshot import Row, Snapshot, take_snapshot
 
 Progress = Callable[[int, int, str], None]
@@ -27,7 +29,15 @@ FORMAT = 2
 MARKER = "datapackage.json"
 """The file that tells an export from any other folder."""
 SHEETS = ("participants", "comparisons", "responses", "trials", "stuck_events", "switches", "audit")
-OWNS = (*(f"{name}.csv" for name in SHEETS), "codebook.json", "study.toml", "recordings", "raw", MARKER)
+OWNS = (
+    *(f"{name}.csv" for name in SHEETS),
+    "codebook.json",
+    "dataset_description.json",
+    "study.toml",
+    "recordings",
+    "raw",
+    MARKER,
+)
 
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
 """First characters that make a spreadsheet run a text as a formula."""
@@ -75,18 +85,34 @@ def export_study(
     report = progress or (lambda done, total, now: None)
     with writing_folder(Path(out), marker=MARKER, owns=OWNS) as folder:
         report(0, steps, "tables")
-        sheets = _write_sheets(folder, study, snapshot)
+        sheets, rows = sheets_and_rows(study, snapshot)
+        for sheet in sheets:
+            write_csv(folder / sheet.file, sheet.fields, rows[sheet.name])
         (folder / "study.toml").write_text(study.toml, encoding="utf-8", newline="")
-        _write_json(folder / "codebook.json", codebook(study.study, sheets))
+        write_json(folder / "codebook.json", codebook(study.study, sheets))
+        write_json(folder / "dataset_description.json", dataset_description(study.study, sheets))
         (folder / "recordings").mkdir()
         for done, trial in enumerate((t for t in snapshot["trials"] if t["recording"]), start=1):
             report(done, steps, str(trial["recording"]))
             _copy_recording(store, folder / "recordings", trial)
         (folder / "raw").mkdir()
-        for table, rows in snapshot.items():
-            _write_raw(folder / "raw" / f"{table}.jsonl", rows)
+        for table, stored in snapshot.items():
+            _write_raw(folder / "raw" / f"{table}.jsonl", stored)
         report(steps - 1, steps, MARKER)
-        _write_json(folder / MARKER, _data_package(folder, study, sheets, snapshot, include_simulated))
+        about = {
+            "name": study.name.lower(),
+            "title": study.study.title,
+            "description": study.study.description,
+            "version": study.version,
+        }
+        elbowroom = {
+            "format": FORMAT,
+            "study_revision": study.revision,
+            "study_sha256": study.sha256,
+            "includes_simulated": include_simulated,
+            "rows": {table: len(stored) for table, stored in snapshot.items()},
+        }
+        write_json(folder / MARKER, data_package(folder, sheets, about, elbowroom))
         report(steps, steps, "")
     return ExportResult(
         Path(out),
@@ -98,18 +124,22 @@ def export_study(
     )
 
 
-def _write_sheets(folder: Path, study: StoredStudy, snapshot: Snapshot) -> tuple[Sheet, ...]:
+def sheets_and_rows(study: StoredStudy, snapshot: Snapshot) -> tuple[tuple[Sheet, ...], dict[str, list[Row]]]:
+    """The tables that people read, and the rows of each by its name."""
     metrics = sorted({name for trial in snapshot["trials"] for name in _mapping(trial["metrics"])})
     background = sorted({name for who in snapshot["participants"] for name in _mapping(who["background"])})
     pooled = any(who["pooled"] for who in snapshot["participants"])
-    sheets = sheets_of(study.study, metrics, background, pooled)
-    rows = _tidy(snapshot, [question.name for question in study.study.questions])
-    for sheet in sheets:
-        _write_csv(folder / sheet.file, sheet.fields, rows[sheet.name])
-    return sheets
+    columns = {
+        "background": column_names("background", background, tables.participants),
+        "metrics": column_names("metric", metrics, tables.trials),
+    }
+    sheets = sheets_of(study.study, columns["metrics"], columns["background"], pooled)
+    return sheets, _tidy(snapshot, [question.name for question in study.study.questions], columns)
 
 
-def _tidy(snapshot: Snapshot, questions: Sequence[str]) -> dict[str, list[Row]]:
+def _tidy(
+    snapshot: Snapshot, questions: Sequence[str], columns: Mapping[str, Mapping[str, str]]
+) -> dict[str, list[Row]]:
     """The rows of the CSV files, with what each needs from other tables."""
     participants = {row["id"]: row for row in snapshot["participants"]}
     comparisons = {row["id"]: row for row in snapshot["comparisons"]}
@@ -129,12 +159,10 @@ def _tidy(snapshot: Snapshot, questions: Sequence[str]) -> dict[str, list[Row]]:
             {**row, "comparison": trial["comparison"], "mode": trial["mode"], "participant": participant}
         )
     return {
-        "participants": [
-            {**row, **_prefixed("background", row["background"])} for row in snapshot["participants"]
-        ],
+        "participants": [_spread(row, "background", columns) for row in snapshot["participants"]],
         "comparisons": snapshot["comparisons"],
         "responses": responses,
-        "trials": [{**row, **_prefixed("metric", row["metrics"])} for row in snapshot["trials"]],
+        "trials": [_spread(row, "metrics", columns) for row in snapshot["trials"]],
         "stuck_events": events,
         "switches": snapshot["switches"],
         "audit": [
@@ -149,11 +177,13 @@ def _mapping(value: object) -> Mapping[str, object]:
     return value
 
 
-def _prefixed(prefix: str, values: object) -> Row:
-    return {column_name(prefix, name): value for name, value in _mapping(values).items()}
+def _spread(row: Row, part: str, columns: Mapping[str, Mapping[str, str]]) -> Row:
+    """A row with a column for each value that one of its cells names."""
+    return {**row, **{columns[part][name]: value for name, value in _mapping(row[part]).items()}}
 
 
-def _write_csv(path: Path, fields: Sequence[Field], rows: Iterable[Row]) -> None:
+def write_csv(path: Path, fields: Sequence[Field], rows: Iterable[Row]) -> None:
+    """Write a table with a header; each cell as `cell` makes it."""
     with path.open("w", encoding="utf-8", newline="") as file:
         file.write(",".join(field.name for field in fields) + "\n")
         for row in rows:
@@ -168,6 +198,8 @@ def cell(value: object) -> str:
         return "true" if value else "false"
     if isinstance(value, datetime):
         return utc_text(value)
+    if isinstance(value, float) and math.isinf(value):
+        return "INF" if value > 0 else "-INF"
     if isinstance(value, int | float):
         return repr(value)
     text = str(value)
@@ -217,72 +249,8 @@ def _plain(value: object) -> object:
     return value
 
 
-def _write_json(path: Path, content: Mapping[str, object]) -> None:
+def write_json(path: Path, content: Mapping[str, object]) -> None:
+    """Write an object with its keys in the order they have."""
     text = io.StringIO()
     json.dump(content, text, indent=2, ensure_ascii=False)
     path.write_text(text.getvalue() + "\n", encoding="utf-8", newline="")
-
-
-def _data_package(
-    folder: Path, study: StoredStudy, sheets: Sequence[Sheet], snapshot: Snapshot, include_simulated: bool
-) -> dict[str, object]:
-    """The folder as a Frictionless Data Package (specs.frictionlessdata.io/data-package)."""
-    by_file = {sheet.file: sheet for sheet in sheets}
-    resources = []
-    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
-        name = path.relative_to(folder).as_posix()
-        resource: dict[str, object] = {
-            "name": name.lower().replace("/", "-").replace("_", "-"),
-            "path": name,
-            "format": path.suffix[1:],
-            "bytes": path.stat().st_size,
-            "hash": f"sha256:{hashlib.sha256(path.read_bytes()).hexdigest()}",
-        }
-        if name in by_file:
-            resource |= {
-                "profile": "tabular-data-resource",
-                "encoding": "utf-8",
-                "schema": _schema(by_file[name]),
-            }
-        resources.append(resource)
-    return {
-        "profile": "data-package",
-        "name": study.name.lower(),
-        "title": study.study.title,
-        "description": study.study.description,
-        "version": study.version,
-        "elbowroom": {
-            "format": FORMAT,
-            "study_revision": study.revision,
-            "study_sha256": study.sha256,
-            "includes_simulated": include_simulated,
-            "rows": {table: len(rows) for table, rows in snapshot.items()},
-        },
-        "resources": resources,
-    }
-
-
-def _schema(sheet: Sheet) -> dict[str, object]:
-    fields = []
-    for field in sheet.fields:
-        constraints: dict[str, object] = {"required": True} if field.is_required else {}
-        if field.valid:
-            constraints["enum"] = list(field.valid)
-        described: dict[str, object] = {"name": field.name, "type": field.type, "description": field.meaning}
-        if field.type == "datetime":
-            described["format"] = "any"
-        if field.unit:
-            described["unit"] = field.unit
-        if constraints:
-            described["constraints"] = constraints
-        fields.append(described)
-    schema: dict[str, object] = {"fields": fields, "primaryKey": list(sheet.keys), "missingValues": [""]}
-    if sheet.references:
-        schema["foreignKeys"] = [
-            {
-                "fields": column,
-                "reference": {"resource": f"{table.replace('_', '-')}.csv", "fields": target},
-            }
-            for column, (table, target) in sheet.references.items()
-        ]
-    return schema

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from data.metric_meanings import LAP_PHASES
 from data.study import Feedback, Maze
 from sim_trials.compiled import compiled
 from sim_trials.kinematics import HANDLE_OFFSET_M, NOZZLE_LENGTH_M
@@ -28,7 +29,7 @@ from sim_trials.record import record_of
 EDGES = 4
 """Edges of the maze; the lap is done when edge 4 would begin."""
 
-PHASES = ("free", "approach", "edge", "exit")
+PHASES = ("free", *LAP_PHASES)
 """The phases of a lap, in the order of their codes."""
 
 NEIGHBOUR_M = 0.30

@@ -2,14 +2,15 @@
 
 Each is given for the whole lap and for the phases approach, edge and exit (``force_mean_n``,
 ``force_mean_edge_n``, ...; see ``maze`` for the phases). A metric that is not defined is left out: of a
-phase that the lap did not reach, say.
+phase that the lap did not reach, say. What each means stands in ``data.metric_meanings``.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from data.metric_meanings import LAP_METRICS, LAP_PHASES, LONGEST_LOCK
 from data.study import Study
 from sim_trials.admittance import CONTROL_PERIOD_S
 from sim_trials.compiled import compiled
@@ -63,21 +64,14 @@ Value = Callable[[Lap, np.ndarray], float]
 
 @dataclass(frozen=True)
 class Metric:
-    """One metric: its stem and unit make the name, ``value`` computes it over some ticks of a lap.
+    """How a metric is computed: ``value`` over some ticks of a lap.
 
     ``while_held``: the ticks in which nobody holds the handle don't count, so that a pause is no sign of
     little force or low speed.
     """
 
-    stem: str
-    unit: str
-    meaning: str
     value: Value
     while_held: bool = False
-
-    def name(self, phase_name: str = "") -> str:
-        """E.g. ``force_mean_n``, or ``force_mean_edge_n`` for a phase."""
-        return "_".join(part for part in (self.stem, phase_name, self.unit) if part)
 
 
 def _solid_share(lap: Lap, at: np.ndarray) -> float:
@@ -92,78 +86,27 @@ def _gain(lap: Lap, at: np.ndarray) -> float:
     return float((commanded * lap.achieved[at]).sum() / total) if total > 0 else float("nan")
 
 
-METRICS: tuple[Metric, ...] = (
-    Metric("duration", "s", "time taken", lambda lap, at: float(at.sum() * CONTROL_PERIOD_S)),
-    Metric(
-        "force_mean",
-        "n",
-        "mean force of the hand while it holds the handle",
-        lambda lap, at: float(lap.force_n[at].mean()),
-        while_held=True,
+_COMPUTED: Mapping[str, Metric] = {
+    "duration": Metric(lambda lap, at: float(at.sum() * CONTROL_PERIOD_S)),
+    "force_mean": Metric(lambda lap, at: float(lap.force_n[at].mean()), while_held=True),
+    "force_peak": Metric(lambda lap, at: float(lap.force_n[at].max())),
+    "speed_mean": Metric(lambda lap, at: float(lap.speed_m_s[at].mean()), while_held=True),
+    "jerk_rms": Metric(lambda lap, at: float(np.sqrt((lap.jerk_m_s3[at] ** 2).mean())), while_held=True),
+    "tilt_mean": Metric(lambda lap, at: float(lap.tilt_deg[at].mean()), while_held=True),
+    "tilt_peak": Metric(lambda lap, at: float(lap.tilt_deg[at].max())),
+    "sigma_min": Metric(lambda lap, at: float(lap.sigma[at].min())),
+    "near_singularity": Metric(
+        lambda lap, at: float((lap.sigma[at] < NEAR_SINGULARITY).sum() * CONTROL_PERIOD_S)
     ),
-    Metric("force_peak", "n", "largest force of the hand", lambda lap, at: float(lap.force_n[at].max())),
-    Metric(
-        "speed_mean",
-        "m_s",
-        "mean speed of the cursor while the handle is held",
-        lambda lap, at: float(lap.speed_m_s[at].mean()),
-        while_held=True,
-    ),
-    Metric(
-        "jerk_rms",
-        "m_s3",
-        "root mean square of the handle's jerk while it is held, low-passed at 5 Hz",
-        lambda lap, at: float(np.sqrt((lap.jerk_m_s3[at] ** 2).mean())),
-        while_held=True,
-    ),
-    Metric(
-        "tilt_mean",
-        "deg",
-        "mean tilt of the nozzle while the handle is held",
-        lambda lap, at: float(lap.tilt_deg[at].mean()),
-        while_held=True,
-    ),
-    Metric("tilt_peak", "deg", "largest tilt of the nozzle", lambda lap, at: float(lap.tilt_deg[at].max())),
-    Metric(
-        "sigma_min", "", "smallest singular value met, SI units", lambda lap, at: float(lap.sigma[at].min())
-    ),
-    Metric(
-        "near_singularity",
-        "s",
-        "time with the smallest singular value below 0.05",
-        lambda lap, at: float((lap.sigma[at] < NEAR_SINGULARITY).sum() * CONTROL_PERIOD_S),
-    ),
-    Metric("solid_share", "", "share of the painted path with an opacity above 0.9", _solid_share),
-    Metric(
-        "gain",
-        "",
-        "responsiveness: the handle's velocity along the command, over the command (least squares)",
-        _gain,
-    ),
-)
-"""All metrics that are split by phase, in the order of the codebook."""
-
-LONGEST_LOCK = "longest_lock_s"
-"""Longest time on end with sigma_min below the study's ``sigma_below`` [s]; for the whole lap alone."""
+    "solid_share": Metric(_solid_share),
+    "gain": Metric(_gain),
+}
+"""By the stems of `LAP_METRICS`, which say what each means."""
 
 
 def metric_names() -> tuple[str, ...]:
     """Every name that `metrics` can give."""
-    split = tuple(metric.name(p) for p in ("", *PHASES[1:]) for metric in METRICS)
-    return (*split, LONGEST_LOCK)
-
-
-def metric_meanings() -> dict[str, str]:
-    """What each metric means, by name, for codebooks."""
-    meanings = {}
-    for metric in METRICS:
-        meanings[metric.name()] = metric.meaning
-        for name in PHASES[1:]:
-            meanings[metric.name(name)] = f"{metric.meaning}; phase {name}"
-    meanings[LONGEST_LOCK] = (
-        "longest time on end with the smallest singular value below the study's threshold"
-    )
-    return meanings
+    return (*(m.name(p) for p in ("", *LAP_PHASES) for m in LAP_METRICS), LONGEST_LOCK)
 
 
 def metrics(trace: Trace, study: Study) -> dict[str, float]:
@@ -174,10 +117,11 @@ def metrics(trace: Trace, study: Study) -> dict[str, float]:
     values = {}
     for number, name in enumerate(PHASES):
         at = code == number if number else everywhere
-        for metric in METRICS:
+        for described in LAP_METRICS:
+            metric = _COMPUTED[described.stem]
             counted = at & lap.is_held if metric.while_held else at
             if counted.any():
-                values[metric.name(name if number else "")] = metric.value(lap, counted)
+                values[described.name(name if number else "")] = metric.value(lap, counted)
     values[LONGEST_LOCK] = float(ticks_below(lap.sigma, study.stuck.sigma_below).max() * CONTROL_PERIOD_S)
     return {name: value for name, value in values.items() if np.isfinite(value)}
 

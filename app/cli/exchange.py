@@ -18,16 +18,28 @@ def export(
     store: StoreOption = None,
     study: StoredStudyOption = None,
     include_simulated: SimulatedOption = False,
+    psych_ds: Annotated[
+        bool,
+        typer.Option("--psych-ds", help="Write the same tables as a Psych-DS data set instead."),
+    ] = False,
 ) -> None:
     """Write tidy CSV files, a codebook, a data package and the recordings of a study.
 
     Example: elbowroom export --store study.sqlite --out export
+
+    Example: elbowroom export --store study.sqlite --out dataset --psych-ds
     """
     from app.cli.progress import progress
     from data.export import export_study
     from data.locations import default_store
+    from data.psych_ds import export_psych_ds
     from data.store import Store
 
+    if psych_ds:
+        with Store.open(store or default_store(), create=False) as kept:
+            dataset = export_psych_ds(kept, kept.study(study), out, include_simulated)
+        print(f"{dataset.folder}: {dataset.rows['responses']} responses, {dataset.rows['trials']} trials")
+        return
     with Store.open(store or default_store(), create=False) as kept, progress("Export") as report:
         stored = kept.study(study)
         result = export_study(kept, stored, out, include_simulated=include_simulated, progress=report)

@@ -8,6 +8,7 @@ from app.console.replay_view import replay_view
 from app.console.style import Mark, headline, table
 from app.console.trial_rows import OUTCOME_WORDS, TrialRow
 from app.server.desk import Desk
+from data.metric_meanings import LAP_METRICS, LAP_PHASES, meaning_of
 from data.records import StuckEvent, Trial
 from data.study import Study
 
@@ -164,17 +165,20 @@ def _download(desk: Desk, trial: Trial) -> None:
 
 def _measures(trial: Trial) -> None:
     """The trial's metrics, for the whole and by phase, and what happened in it."""
-    from sim_trials.maze import PHASES
-    from sim_trials.metrics import METRICS
-
-    known = [(metric.meaning, metric.unit, metric.name) for metric in METRICS]
     split = [
-        (f"{meaning} [{unit}]" if unit else meaning, *(_shown(trial, name(p)) for p in ("", *PHASES[1:])))
-        for meaning, unit, name in known
+        (
+            meaning_of(metric.name()).label,
+            *(_shown(trial, metric.name(phase)) for phase in ("", *LAP_PHASES)),
+        )
+        for metric in LAP_METRICS
     ]
-    named = {name(p) for _, _, name in known for p in ("", *PHASES[1:])}
-    rest = [(name, _shown(trial, name), "", "", "") for name in sorted(trial.metrics) if name not in named]
-    head = ("Measure", "Whole trial", *(phase.capitalize() for phase in PHASES[1:]))
+    named = {metric.name(phase) for metric in LAP_METRICS for phase in ("", *LAP_PHASES)}
+    rest = [
+        (meaning_of(name).label, _shown(trial, name), "", "", "")
+        for name in sorted(trial.metrics)
+        if name not in named
+    ]
+    head = ("Measure", "Whole trial", *(phase.capitalize() for phase in LAP_PHASES))
     table(head, [*split, *rest], numbers=(1, 2, 3, 4))
     if trial.events:
         table(

@@ -1,8 +1,10 @@
 """The main job, end to end, on a small cohort."""
 
 import json
+import time
 from pathlib import Path
 
+import frictionless
 import pandas as pd
 import pytest
 
@@ -31,6 +33,19 @@ def test_the_demo_ends_in_a_store_a_report_and_an_export(demo: Path) -> None:
 def test_the_demo_says_everywhere_that_it_is_simulated(demo: Path) -> None:
     assert "simulated" in (demo / "report" / "report.html").read_text().lower()
     assert json.loads((demo / "report" / "summary.json").read_text())["simulated"] is True
+
+
+def test_the_export_is_a_valid_data_package_with_all_meanings_and_is_validated_fast(demo: Path) -> None:
+    started = time.perf_counter()
+    report = frictionless.validate(str(demo / "export" / "datapackage.json"))
+    # Seven people's, of 275 files, must be valid in less than 15 s.
+    assert time.perf_counter() - started < 15.0
+    assert report.valid, report.to_summary()
+    assert report.stats["tasks"] == 6 * 2 * 3 + 7 + 13 + 3
+    tables = json.loads((demo / "export" / "codebook.json").read_text())["tables"]
+    metrics = {name: about for name, about in tables["trials.csv"]["columns"].items() if "metric_" in name}
+    assert len(metrics) > 40
+    assert all(about["unit"] and "not a metric" not in about["meaning"] for about in metrics.values())
 
 
 def test_every_comparison_was_run_under_both_methods_lap_by_lap(demo: Path) -> None:

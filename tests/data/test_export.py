@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from data.codebook import unit_in
 from data.errors import ElbowroomError, InputError
 from data.export import OWNS, SHEETS, export_study
+from data.metric_meanings import unit_in
 from data.records import Participant
 from data.response_csv import read_response_csv
 from data.store import Store
