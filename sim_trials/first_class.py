@@ -12,13 +12,19 @@ from numba.core import cgutils, types, typing
 from numba.core.base import BaseContext
 from numba.extending import intrinsic
 
+from data.private_parts import require
 from sim_trials.model import STEP_TYPE
 from sim_trials.modes.method import MODE_SIGNATURE, MODE_TYPE, ModeFunction
+
+require("numba", cgutils, "create_struct_proxy", "voidptr_t")
 
 
 def mode_address(function: ModeFunction) -> int:
     """Address of a method's compiled function; valid as long as the function lives."""
+    require("numba", function, "get_compile_result")
     result = function.get_compile_result(MODE_SIGNATURE)  # type: ignore[attr-defined]
+    require("numba", result.library, "get_pointer_to_function")
+    require("numba", result.fndesc, "llvm_cfunc_wrapper_name")
     address: int = result.library.get_pointer_to_function(result.fndesc.llvm_cfunc_wrapper_name)
     return address
 

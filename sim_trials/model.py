@@ -11,9 +11,12 @@ import numpy as np
 from numba.core import types
 
 from data.errors import ElbowroomError
+from data.private_parts import require
 
 PHYSICS_STEP_S = 0.002
 """Time step of the model [s]."""
+
+require("numba", types, "FunctionType", "WrapperAddressProtocol")
 
 STEP_SIGNATURE = types.void(types.intp, types.intp)
 """``mj_step`` as a compiled loop sees it: address of the model, address of the data."""
@@ -40,12 +43,24 @@ class PhysicsStep(types.WrapperAddressProtocol):
 
 @cache
 def _library() -> ctypes.CDLL:
-    """MuJoCo's C library, found in its package under whatever name the platform gives it."""
+    """MuJoCo's C library, found in its package under whatever name the platform gives it.
+
+    An upgrade in place may leave an older library beside it, whose structures are laid out otherwise: the one
+    that says the version of the Python bindings is taken.
+    """
     folder = Path(mujoco.__file__).parent
-    for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll"):
-        for path in sorted(folder.glob(pattern)):
-            return ctypes.CDLL(str(path))
-    raise ElbowroomError(f"MuJoCo's C library was not found in {folder}; reinstall the package mujoco")
+    paths = [
+        p for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll") for p in folder.glob(pattern)
+    ]
+    for path in sorted(paths, key=lambda path: (mujoco.__version__ not in path.name, path.name)):
+        library = ctypes.CDLL(str(path))
+        if library.mj_version() == mujoco.mj_version():
+            return library
+    names = ", ".join(sorted(path.name for path in paths)) or "no library"
+    raise ElbowroomError(
+        f"MuJoCo {mujoco.__version__} has {names} in {folder}, none of this version: "
+        "pip install --force-reinstall mujoco"
+    )
 
 
 @cache
@@ -107,6 +122,8 @@ def new_robot(q: np.ndarray) -> Robot:
     """A robot of its own, at rest at joint angles ``q`` [rad]."""
     model = ur10_model()
     data = mujoco.MjData(model)
+    require("mujoco", model, "_address")
+    require("mujoco", data, "_address")
     robot = Robot(
         model=model,
         data=data,

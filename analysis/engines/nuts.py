@@ -20,6 +20,21 @@ from numpy.typing import NDArray
 from analysis.engines.compiled import REGROUPED, c_function, compiled
 from analysis.engines.density import log_density
 from data.errors import ElbowroomError
+from data.private_parts import unsuitable
+
+NUTPIE = "nutpie>=0.16,<0.16.9"
+"""The versions whose core has the signatures below."""
+_SIGNATURES = {
+    "ExpandFunc": "(dim, expanded_dim, ptr, user_data_ptr, keep_alive)",
+    "LogpFunc": "(ptr, user_data_ptr, keep_alive)",
+    "ProgressType.none": "()",
+    "PyMcModel": "(density, expand, variables, dim, dim_sizes, coords, init_func, transform_adapter)",
+    "PyNutsSettings.Diag": "(seed=None)",
+    "PySampler.from_pymc": "(settings, cores, model, progress_type, store)",
+    "PyStorage.arrow": "()",
+    "PyVariable.new_variables": "($cls, names, item_types, shapes, dim_sizes, dims)",
+}
+"""What is called in nutpie's core, which is no public interface: 0.16.9 to 0.16.11 have another."""
 
 _DATA_SIZE = 1
 """The block handed to the core starts with the length of the packed data."""
@@ -82,7 +97,7 @@ class Chains:
 def _core() -> ModuleType:
     """nutpie's Rust core, loaded without nutpie's Python layer."""
     if "nutpie._lib" in sys.modules:
-        return sys.modules["nutpie._lib"]
+        return _checked(sys.modules["nutpie._lib"])
     package = importlib.util.find_spec("nutpie")
     if package is None or package.submodule_search_locations is None:
         raise ElbowroomError("engine fast: nutpie is not installed; install it or use another engine")
@@ -96,7 +111,19 @@ def _core() -> ModuleType:
     spec.loader.exec_module(module)
     # An extension of this kind loads once a process: a later `import nutpie` must find this one.
     sys.modules["nutpie._lib"] = module
-    return module
+    return _checked(module)
+
+
+def _checked(core: ModuleType) -> ModuleType:
+    """The core, if what is called in it takes what it is called with."""
+    for name, expected in _SIGNATURES.items():
+        part: object = core
+        for step in name.split("."):
+            part = getattr(part, step, None)
+        if getattr(part, "__text_signature__", None) != expected:
+            has = f"{name}{getattr(part, '__text_signature__', '')}" if part else f"no {name}"
+            raise unsuitable("nutpie", f"its core has {has}", NUTPIE)
+    return core
 
 
 def sample(

@@ -4,14 +4,22 @@ import os
 import platform
 import shutil
 import sys
+import tempfile
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 
-import numpy as np
-
 from data.errors import ElbowroomError
+from data.private_parts import installed_version
+
+_ANSWERS = """participant,mode_a,mode_b,response
+p1,M1,M2,A>B
+p2,M2,M1,B>A
+p3,M1,M2,A>B
+p4,M2,M1,A>B
+"""
+"""Three people of four prefer M1."""
 
 
 @dataclass(frozen=True)
@@ -23,18 +31,28 @@ class Finding:
 
 
 def doctor() -> None:
-    """Check this machine: Python, MuJoCo, compilers, the store's folder, a browser.
+    """Check this machine: a lap on MuJoCo, a fit, a store, compilers, a browser. It does what it checks.
 
     Example: elbowroom doctor
     """
     failed = False
-    for check in CHECKS:
-        finding = check()
+    for name, check in CHECKS.items():
+        finding = _isolated(name, check)
         mark = {True: "ok  ", None: "note", False: "FAIL"}[finding.good]
         print(f"{mark}  {finding.text}")
         failed = failed or finding.good is False
     if failed:
         raise ElbowroomError("this machine cannot run everything: see the lines marked FAIL")
+
+
+def _isolated(name: str, check: Callable[[], Finding]) -> Finding:
+    """What a check finds; whatever it raises is a finding of one line, and the next check is made."""
+    try:
+        return check()
+    except Exception as error:
+        reason = " ".join(str(error).split()) or "no reason given"
+        kind = "" if isinstance(error, ElbowroomError) else f"{type(error).__name__}: "
+        return Finding(False, f"{name}: {kind}{reason}")
 
 
 def _python() -> Finding:
@@ -46,14 +64,36 @@ def _python() -> Finding:
     )
 
 
-def _mujoco() -> Finding:
-    from sim_trials.model import new_robot
+def _lap() -> Finding:
+    from app.studies import open_study
+    from sim_trials.operators import draw_operator
+    from sim_trials.trial import run_trial
 
-    try:
-        new_robot(np.zeros(6))
-    except Exception as error:
-        return Finding(False, f"MuJoCo {metadata.version('mujoco')} cannot load the UR10: {error}")
-    return Finding(True, f"MuJoCo {metadata.version('mujoco')} loads the UR10")
+    started = time.perf_counter()
+    study = open_study("carmichael2017").study
+    lap = run_trial(study, study.mode_names[-1], draw_operator(3), seed=1)
+    return Finding(
+        lap.outcome != "failed",
+        f"MuJoCo {installed_version('mujoco')} steps a lap of the UR10: {lap.outcome} after "
+        f"{lap.duration_s:.1f} simulated s ({time.perf_counter() - started:.1f} s here, with compiling)",
+    )
+
+
+def _fit() -> Finding:
+    from analysis.fit import fit
+    from data.response_csv import read_response_csv
+
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "answers.csv"
+        path.write_text(_ANSWERS, encoding="utf-8")
+        question = fit(read_response_csv(path)).questions[0]
+    best = max(question.modes, key=lambda mode: mode.worth_mean).mode
+    return Finding(
+        best == "M1",
+        f"nutpie {installed_version('nutpie')} samples a fit of four answers: {best} ranks first "
+        f"({time.perf_counter() - started:.1f} s, with compiling)",
+    )
 
 
 def _cpp_compiler() -> Finding:
@@ -80,7 +120,12 @@ def _numba_cache() -> Finding:
 
 def _store() -> Finding:
     from data.locations import default_store
+    from data.store import Store
 
+    with tempfile.TemporaryDirectory() as place, Store.open(Path(place) / "probe.sqlite") as probe:
+        probe.log("doctor", "looked")
+        if not probe.verify_audit().is_intact:
+            return Finding(False, "a new store does not keep what is written to it")
     folder = Path(default_store()).parent
     existing = next(p for p in (folder, *folder.parents) if p.exists())
     if not os.access(existing, os.W_OK):
@@ -98,4 +143,12 @@ def _browser() -> Finding:
     return Finding(None, "no Chromium: browser tests are skipped (on Debian: apt-get install chromium)")
 
 
-CHECKS: tuple[Callable[[], Finding], ...] = (_python, _mujoco, _cpp_compiler, _numba_cache, _store, _browser)
+CHECKS: dict[str, Callable[[], Finding]] = {
+    "Python": _python,
+    "a lap of the robot": _lap,
+    "a fit": _fit,
+    "compiler": _cpp_compiler,
+    "numba's cache": _numba_cache,
+    "store": _store,
+    "browser": _browser,
+}

@@ -1,6 +1,7 @@
 """The command line: which commands there are, and how an error becomes one plain line."""
 
 import sys
+import traceback
 from collections.abc import Sequence
 
 import typer
@@ -22,6 +23,10 @@ from app.cli import (
     trial,
 )
 from data.errors import ElbowroomError
+from data.private_parts import installed_version
+
+OWN_PACKAGES = ("app", "analysis", "data", "sim_trials")
+"""A failed import of one of these is a fault of Elbowroom, not of what is installed."""
 
 cli = typer.Typer(
     name="elbowroom",
@@ -65,9 +70,23 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return _fail(message(), 2)
     except ElbowroomError as error:
         return _fail(str(error), error.exit_code)
+    except ImportError as error:
+        package = _package_that_failed(error)
+        if package in OWN_PACKAGES:
+            raise
+        version = installed_version(package)
+        return _fail(f"{package} {version} cannot be imported: {error} (`elbowroom doctor` says more)", 1)
     except BrokenPipeError:
         return 1
     return code if isinstance(code, int) else 0
+
+
+def _package_that_failed(error: ImportError) -> str:
+    """The top-level package that cannot be imported: the one named, else the one that raised."""
+    if error.name:
+        return error.name.partition(".")[0]
+    frames = list(traceback.walk_tb(error.__traceback__))
+    return str(frames[-1][0].f_globals.get("__name__", "")).partition(".")[0]
 
 
 def _fail(message: str, code: int) -> int:

@@ -6,10 +6,14 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from websockets.http11 import Request
 
 from app.server.live.route import PATH
+from data.private_parts import require
 
 _MOST_WAITING = 4096
 """What may wait for a slow receiver [bytes], in our buffer and in the system's: some 50 states, not 30 s of
 them. A sender that is told early can send a newer state instead."""
+
+
+require("uvicorn", WebSocketsSansIOProtocol, "handle_connect")
 
 
 class LiveSocket(WebSocketsSansIOProtocol):
