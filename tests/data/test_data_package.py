@@ -4,7 +4,6 @@ import json
 from datetime import UTC, datetime
 from pathlib import Path
 
-import frictionless
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,11 +13,12 @@ from data.export import FORMULA_STARTS, cell, export_study
 from data.records import Comparison, Participant, StuckEvent, Switch, Trial
 from data.store import Store
 from data.study_file import study_text
+from tests.frictionless_report import typed_rows, validated
 
 
 def problems(folder: Path) -> list[str]:
     """What Frictionless finds wrong, a line each."""
-    report = frictionless.validate(str(folder / "datapackage.json"))
+    report = validated(folder)
     places = [*report.errors, *(error for task in report.tasks for error in task.errors)]
     return [f"{error.type}: {error.message}" for error in places]
 
@@ -30,8 +30,7 @@ def resources(folder: Path) -> dict[str, dict]:
 
 def read_by_schema(folder: Path, path: str) -> list[dict[str, object]]:
     """A table's rows as Frictionless types them."""
-    package = frictionless.Package(str(folder / "datapackage.json"))
-    return [row.to_dict() for row in package.get_resource(resources(folder)[path]["name"]).read_rows()]
+    return typed_rows(folder, resources(folder)[path]["name"])
 
 
 def raw_rows(folder: Path, table: str) -> list[dict[str, object]]:
@@ -69,7 +68,7 @@ def test_a_changed_byte_is_found_in_every_kind_of_file(store, fill, tmp_path, pl
     content[-2] ^= 1
     path.write_bytes(content)
     name = path.relative_to(tmp_path / "out").as_posix()
-    report = frictionless.validate(str(tmp_path / "out" / "datapackage.json"))
+    report = validated(tmp_path / "out")
     wrong = {task.place for task in report.tasks if not task.valid}
     assert wrong == {str(tmp_path / "out" / name)} or {Path(place).name for place in wrong} == {path.name}
     assert any("hash" in problem for problem in problems(tmp_path / "out"))
