@@ -2,11 +2,10 @@
 # Frictionless (5.21.0) changes what other CSV readers in the same process accept.
 #
 # The first CSV file that it opens raises Python's csv.field_size_limit from 131,072 to 2,147,483,646 characters,
-# for the whole process and for good; importing it does not. So a reader that refused a cell of 200,000 characters
-# (in practice a quotation mark that was never closed, which swallows the rest of the file) takes it afterwards: the
-# same file is an error before a validation and a table with missing rows after it.
+# for the whole process and for good; importing it does not. So what a reader based on Python's csv makes of a
+# valid file with a long cell depends on whether something was validated before in the same process.
 #
-# Seen: 131072 131072 2147483646; "field larger than field limit (131072)", then 1 row of 30,001.
+# Seen: 131072 131072 2147483646; "field larger than field limit (131072)", then 1 row.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -18,13 +17,12 @@ venv/bin/python - <<'PYTHON'
 import csv
 from pathlib import Path
 
-with open("unclosed.csv", "w") as file:
-    file.write('mode,comment\nM1,"never closed\n' + "M2,fine\n" * 30_000)
+Path("long.csv").write_text("mode,comment\nM1," + "a" * 200_000 + "\n")
 Path("good.csv").write_text("mode,comment\nM1,fine\n")
 
 
 def read():
-    with open("unclosed.csv", newline="") as file:
+    with open("long.csv", newline="") as file:
         return list(csv.reader(file))[1:]
 
 
@@ -41,7 +39,7 @@ assert frictionless.validate("good.csv").valid
 after = csv.field_size_limit()
 rows = read()
 print(before, imported, after)
-print(refusal, "; then", len(rows), "row of 30,001")
+print(refusal, "; then", len(rows), "row")
 assert (before, imported) == (131_072, 131_072)
 assert after == 2_147_483_646, after
 assert "larger than field limit" in refusal
