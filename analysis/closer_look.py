@@ -44,7 +44,7 @@ def closer_look(table: ResponseTable, fit: Fit, metrics: MetricTable | None = No
         strengths(fit, shares),
         equivalences(fit),
         agreements(table, fit, seed),
-        consistencies(table, seed),
+        consistencies(table),
         predictive_checks(table, fit),
         mode_measures(metrics, fit.modes, seed) if metrics is not None else (),
         associations(table, fit, metrics) if metrics is not None else (),

@@ -3,7 +3,7 @@
 References
 ----------
 Kendall & Babington Smith 1940, "On the method of paired comparisons", Biometrika 31 (circular triads, the
-coefficient of consistence zeta, the coefficient of agreement u).
+coefficient of consistence zeta, the coefficient of agreement u, and the distribution of the number of agreements).
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.engines.fast import question_seed
+from analysis.agreement_chance import agreement_chance
 from data.answers import SCALES
 from data.responses import QuestionScale, ResponseTable
 
@@ -22,9 +22,6 @@ CIRCULAR_BY_CHANCE = 0.25
 """Share of circular triads among those of someone who tosses a coin for every pair."""
 MOST_MODES = 60
 """Triads grow with the cube of the modes; with more than these they are not counted."""
-_COIN_TOSSES = 1000
-_MOST_AT_ONCE = 1_000_000
-"""So many single answers are tossed for together: more would fill the memory."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +45,13 @@ class Consistency:
         Share of the same that would be expected by chance, given how often each answer was given to the pair
         before and after: for all.
     retest : float
-        Correlation of such answers with those before, on the scale from much j (-2) to much i (2), about 0.
+        Correlation of such answers with those before within pairs: the scale goes from much j (-2) to much i
+        (2), and of every pair its mean before and its mean after are taken out, so that pairs which everybody
+        decides alike do not count as a memory. For all.
     u : float
         Kendall's coefficient of agreement between people; 1 if all agree on every pair. For all.
     u_p : float
-        Share of 1,000 sets of people who toss a coin for every decided pair that agree as much. For all.
+        Exact chance that people who toss a coin for every pair they decided agree as much. For all.
     """
 
     question: str
@@ -70,7 +69,7 @@ class Consistency:
     u_p: float = nan
 
 
-def consistencies(table: ResponseTable, seed: int = 2017) -> tuple[Consistency, ...]:
+def consistencies(table: ResponseTable) -> tuple[Consistency, ...]:
     """All participants together, then each, question by question; none if participants are unknown."""
     if not table.has_participants:
         return ()
@@ -78,22 +77,18 @@ def consistencies(table: ResponseTable, seed: int = 2017) -> tuple[Consistency, 
     return tuple(
         found
         for question in table.questions
-        for found in _question(
-            rows[rows["question"] == question.name], table.modes_of(question), question, seed
-        )
+        for found in _question(rows[rows["question"] == question.name], table.modes_of(question), question)
     )
 
 
-def _question(
-    rows: pd.DataFrame, modes: tuple[str, ...], question: QuestionScale, seed: int
-) -> list[Consistency]:
+def _question(rows: pd.DataFrame, modes: tuple[str, ...], question: QuestionScale) -> list[Consistency]:
     if rows.empty:
         return []
     turned = _turned(rows, modes, question)
     people = {str(who): group for who, group in turned.groupby("participant", sort=False)}
     each = [_person(question.name, who, group, len(modes)) for who, group in people.items()]
     chance, retest = _over_repeats(turned)
-    u, u_p = _agreement(turned, len(modes), question_seed(seed, f"agreement {question.name}"))
+    u, u_p = _agreement(turned, len(modes))
     zetas = [c.zeta for c in each if not np.isnan(c.zeta)]
     together = Consistency(
         question.name,
@@ -198,12 +193,14 @@ def _over_repeats(answers: pd.DataFrame) -> tuple[float, float]:
     for _, group in pairs.groupby(["i", "j"]):
         old, new = group["old"].value_counts(normalize=True), group["new"].value_counts(normalize=True)
         expected += len(group) * float((old * new.reindex(old.index, fill_value=0.0)).sum())
-    x, y = before[again].to_numpy(float), answers.loc[again, "score"].to_numpy(float)
+    scores = answers.loc[again, ["before", "score"]].astype(float)
+    centred = scores - scores.groupby([pairs["i"], pairs["j"]]).transform("mean")
+    x, y = centred["before"].to_numpy(), centred["score"].to_numpy()
     size = float(np.sqrt((x**2).sum() * (y**2).sum()))
     return expected / len(pairs), float((x * y).sum() / size) if size else nan
 
 
-def _agreement(answers: pd.DataFrame, n_modes: int, seed: int) -> tuple[float, float]:
+def _agreement(answers: pd.DataFrame, n_modes: int) -> tuple[float, float]:
     """Kendall's u over the people who compared every pair, a tie as half a preference each; its chance."""
     net = answers.assign(sign=np.sign(answers["score"]))
     choices = net.groupby(["participant", "i", "j"])["sign"].sum().unstack(["i", "j"])
@@ -212,20 +209,13 @@ def _agreement(answers: pd.DataFrame, n_modes: int, seed: int) -> tuple[float, f
     signs = np.sign(choices.dropna().to_numpy(float))
     if len(signs) < 2 or n_modes < 2:
         return nan, nan
-    seen = float(_kendall_u(signs[None])[0])
-    rng = np.random.default_rng(seed)
-    at_once = max(1, _MOST_AT_ONCE // signs.size)
-    as_agreed = 0
-    for done in range(0, _COIN_TOSSES, at_once):
-        sets = min(at_once, _COIN_TOSSES - done)
-        tossed = _kendall_u(signs * rng.choice([-1.0, 1.0], size=(sets, *signs.shape)))
-        as_agreed += int(np.sum(tossed >= seen - 1e-12))
-    return seen, (1 + as_agreed) / (1 + _COIN_TOSSES)
+    decided = np.abs(signs).sum(axis=0).astype(np.int64)
+    return _kendall_u(signs), agreement_chance(signs.sum(axis=0).astype(np.int64), decided)
 
 
-def _kendall_u(signs: FloatArray) -> FloatArray:
-    """``2 Sum / (C(m, 2) C(K, 2)) - 1``; ``signs`` has shape (set, person, pair)."""
-    m = signs.shape[1]
-    for_i = (1 + signs).sum(axis=1) / 2
+def _kendall_u(signs: FloatArray) -> float:
+    """``2 Sum / (C(m, 2) C(K, 2)) - 1``; ``signs`` has shape (person, pair)."""
+    m = len(signs)
+    for_i = (1 + signs).sum(axis=0) / 2
     agreeing = (for_i * (for_i - 1) + (m - for_i) * (m - for_i - 1)) / 2
-    return np.asarray(2 * agreeing.sum(axis=1) / (comb(m, 2) * signs.shape[2]) - 1)
+    return float(2 * agreeing.sum() / (comb(m, 2) * signs.shape[1]) - 1)

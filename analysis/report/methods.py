@@ -302,8 +302,8 @@ def _closer(look: CloserLook | None) -> str:
     if any(c.participant == "all" for c in look.consistencies):
         said.append(
             "Circular triads, the coefficient of consistence zeta and the coefficient of agreement u follow "
-            "Kendall & Babington Smith (1940), a tie counting as half a preference for either; u is compared "
-            "with 1,000 sets of coin tosses."
+            "Kendall & Babington Smith (1940), a tie counting as half a preference for either; the chance of u "
+            "under coin tosses is exact, by convolution over the pairs, ties as they are."
         )
     if look.associations:
         said.append(

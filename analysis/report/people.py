@@ -147,11 +147,17 @@ def consistency_section(look: CloserLook) -> Section | None:
             f"Asked again about a pair, {'people' if people > 1 else 'the participant'} said the same in "
             f"{same:,} of {repeated:,} cases ({percent(same / repeated)} %; by chance, given how often each "
             f"answer was given to the pair, it would be {percent(chance)} %) and the opposite in {turned:,}."
+            + (
+                " Retest r correlates an answer with the one before on the same pair, within pairs: where "
+                "everybody prefers one mode of a pair, that alone does not make r large."
+                if any(not isnan(c.retest) for c in together)
+                else ""
+            )
         )
     if any(not isnan(c.u) for c in together):
         words.append(
             "Kendall's u says how far people agree with each other: 1 if all do on every pair, about 0 or "
-            "below if they toss coins; p is the share of sets of people tossing coins that agree as much."
+            "below if they toss coins; p is the exact chance that people tossing coins agree as much."
         )
     unsteady = _unsteady(look.consistencies)
     if unsteady:
