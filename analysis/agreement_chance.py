@@ -1,13 +1,13 @@
 """How often people who toss coins agree as much as these do: the exact distribution behind Kendall's u.
 
-Of ``d`` people who decided a pair, ``s`` more (or fewer) put one mode above the other. The number of agreements
-is ``sum(s^2)`` over the pairs, but for a constant. Under coin tosses ``(d + s) / 2`` is Binomial(d, 1/2) for each
-pair, independently, so that the distribution of the sum follows by convolution over the pairs.
+Of ``d`` people who decided a pair, ``s`` more (or fewer) put one mode above the other. The number of
+agreements rises with ``sum(s^2)`` over the pairs. Under coin tosses ``(d + s) / 2`` is Binomial(d, 1/2) for
+each pair, independently, so that the distribution of the sum follows by convolution over the pairs.
 
 References
 ----------
-Kendall & Babington Smith 1940, "On the method of paired comparisons", Biometrika 31 (the same distribution for
-people who decide every pair, and its approximation by three moments).
+Kendall & Babington Smith 1940, "On the method of paired comparisons", Biometrika 31 (the same
+distribution for people who decide every pair, and its approximation by three moments).
 """
 
 from functools import lru_cache
@@ -45,7 +45,7 @@ def agreement_chance(lead: IntArray, decided: IntArray) -> float:
 
 
 def _by_convolution(reached: int, decided: IntArray) -> float:
-    """Chance of at least ``reached``; sums that have reached it are only counted, as they never fall again."""
+    """Chance of at least ``reached``; sums that have reached it are only counted: they never fall."""
     below = np.zeros(reached)
     above = 1.0
     if reached:

@@ -12,6 +12,8 @@ from math import prod
 
 import numpy as np
 
+from analysis.figures.labels import percent_in_words
+
 
 @dataclass(frozen=True)
 class Claim:
@@ -46,3 +48,32 @@ def all_right(claims: Sequence[Claim]) -> float:
     for claim in claims:
         wrong[claim.question] = wrong.get(claim.question, 0.0) + 1.0 - claim.probability
     return prod(max(0.0, 1.0 - share) for share in wrong.values())
+
+
+def joint_sentence(claims: Sequence[Claim], one: str, many: str) -> str:
+    """How far several claims can be relied on together, as a sentence; empty if there are none.
+
+    Parameters
+    ----------
+    one, many : str
+        What is claimed, such as ``named first`` and ``named firsts``.
+    """
+    if not claims:
+        return ""
+    if len(claims) == 1:
+        return f"The chance that this {one} is wrong is {percent_in_words(1.0 - claims[0].probability)}."
+    questions = [claim.question for claim in claims]
+    least = "at least " if len(set(questions)) < len(questions) else ""
+    together = all_right(claims)
+    said = f"Of the {len(claims):,} {many} {_number(expected_wrong(claims))} are expected to be wrong"
+    if least and together < 0.5:
+        # The limit for claims about one question falls to 0 with many of them, and says nothing then.
+        return f"{said}."
+    return f"{said}; the chance that all of them are right is {least}{percent_in_words(together)}."
+
+
+def _number(expected: float) -> str:
+    """An expected number with about two digits, never a bare 0."""
+    if expected < 0.01:
+        return "fewer than 0.01"
+    return f"{expected:.2f}" if expected < 0.995 else f"{expected:.1f}"

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from analysis.answer_shares import PairShares, answer_shares
 from analysis.association import Association, ModeMeasure, associations, mode_measures
 from analysis.consistency import Consistency, consistencies
+from analysis.equality_reach import EqualityReach, reach_of
 from analysis.equivalence import Equivalence, equivalences
+from analysis.monte_carlo import MonteCarloError, monte_carlo_errors
 from analysis.persons import Agreement, agreements
 from analysis.predictive import PredictiveChecks, predictive_checks
 from analysis.results import Fit
@@ -21,6 +23,10 @@ class CloserLook:
     ----------
     shares : tuple of tuples of PairShares
         Question by question.
+    errors : tuple of MonteCarloError
+        Of the means and chances of the ranking itself.
+    equality : EqualityReach or None
+        What a study of this size could show of equal modes, where that is known.
     measures, associations
         Of the metrics of the laps, where there are laps.
     """
@@ -33,6 +39,8 @@ class CloserLook:
     checks: PredictiveChecks
     measures: tuple[ModeMeasure, ...] = ()
     associations: tuple[Association, ...] = ()
+    errors: tuple[MonteCarloError, ...] = ()
+    equality: EqualityReach | None = None
 
 
 def closer_look(table: ResponseTable, fit: Fit, metrics: MetricTable | None = None) -> CloserLook:
@@ -48,4 +56,6 @@ def closer_look(table: ResponseTable, fit: Fit, metrics: MetricTable | None = No
         predictive_checks(table, fit),
         mode_measures(metrics, fit.modes, seed) if metrics is not None else (),
         associations(table, fit, metrics) if metrics is not None else (),
+        monte_carlo_errors(fit),
+        reach_of(fit),
     )

@@ -3,7 +3,7 @@
 References
 ----------
 Kendall & Babington Smith 1940, "On the method of paired comparisons", Biometrika 31 (circular triads, the
-coefficient of consistence zeta, the coefficient of agreement u, and the distribution of the number of agreements).
+coefficient of consistence zeta, the coefficient of agreement u).
 """
 
 from dataclasses import dataclass

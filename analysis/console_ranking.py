@@ -7,9 +7,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from analysis.diagnostics import shown_ess, shown_rhat
+from analysis.diagnostics import ess_in_words, rhat_in_words
+from analysis.equality_reach import reach_of
 from analysis.figures.labels import LIKELY, one_line, percent, shortened
-from analysis.report.findings import Finding, findings
+from analysis.report.findings import Finding, findings, first_sentence
 from analysis.results import Fit, ModeResult
 
 _BAR_CELLS = 30
@@ -49,6 +50,11 @@ def print_ranking(fit: Fit, console: Console, *, is_simulated: bool = False) -> 
         equal = {f"{1 / len(q.modes):.2f}" for q in fit.questions if q.ranked}
         key += f" ({equal.pop()})" if len(equal) == 1 else ""
         first = f"“First” is the chance to rank first; from {100 * LIKELY:.0f} % on it is called likely."
+        every, reach = findings(fit), reach_of(fit)
+        if reach is not None and any(f.reading == "open" for f in every) and reach.about_open:
+            said = [reach.about_open, *said]
+        if joint := first_sentence(every):
+            said = [joint, *said]
         said = [f"{key}; bars from 0 to {top:.2g}", first, *said]
     for sentence in said:
         console.print(Text(_printable(sentence, console), style="dim"))
@@ -145,6 +151,6 @@ def _about_the_sampler(fit: Fit) -> list[str]:
         return []
     state = "converged" if fit.converged else "NOT converged"
     return [
-        f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat {shown_rhat(fit.rhat_max)}, "
-        f"ESS {shown_ess(fit.ess_min)}, divergences {fit.divergences:,}."
+        f"Engine {fit.settings.engine}, seed {fit.settings.seed}, {state}: R-hat "
+        f"{rhat_in_words(fit.rhat_max)}, ESS {ess_in_words(fit.ess_min)}, divergences {fit.divergences:,}."
     ]

@@ -55,6 +55,9 @@ class Convergence:
 def convergence(draws: NDArray[np.float64]) -> Convergence:
     """Rank-normalised split R-hat, bulk ESS and tail ESS of many quantities at once.
 
+    Tail ESS is the smaller one of the 5 % and 95 % quantiles, as in Vehtari et al. 2021 and ArviZ before
+    1.0 (later versions take other quantiles unless they are named: ``prob=(0.05, 0.95)``).
+
     A quantity that is the same in every draw has an R-hat of 1 and an ESS of all the draws; one that is
     constant within chains and differs between them has an infinite R-hat; one with a draw that is no finite
     number has nan.
@@ -85,14 +88,36 @@ def _convergence(draws: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
     return tuple(np.where(is_known, values, np.nan) for values in found)
 
 
+def ess_of_mean(draws: NDArray[np.float64]) -> NDArray[np.float64]:
+    """ESS for the mean of the draws themselves, from which its Monte Carlo error follows; shape (quantity,).
+
+    Parameters
+    ----------
+    draws : ndarray, shape (quantity, chain, draw)
+    """
+    return np.concatenate([_ess(_split(draws[k : k + _BLOCK])) for k in range(0, len(draws), _BLOCK)])
+
+
 def shown_rhat(rhat: float) -> str:
-    """Three digits, rounded to the side of the gate that the value is on: 1.0096 has passed, so 1.009."""
-    return f"{(np.floor if rhat < RHAT_BELOW else np.ceil)(1000 * rhat) / 1000:.3f}"
+    """Rounded to three digits."""
+    return f"{rhat:.3f}"
 
 
 def shown_ess(ess: float) -> str:
-    """Without digits, rounded to the side of the gate that the value is on: 400.3 has passed, so 401."""
-    return f"{(np.ceil if ess > ESS_ABOVE else np.floor)(ess):,.0f}"
+    """Rounded to a whole number."""
+    return f"{ess:,.0f}"
+
+
+def rhat_in_words(rhat: float) -> str:
+    """The same for a sentence, which says so where the rounded value hides that the gate was passed."""
+    hidden = rhat < RHAT_BELOW <= float(shown_rhat(rhat))
+    return f"{shown_rhat(rhat)}{f' (just below {RHAT_BELOW})' if hidden else ''}"
+
+
+def ess_in_words(ess: float) -> str:
+    """The same for a sentence, which says so where the rounded value hides that the gate was passed."""
+    hidden = ess > ESS_ABOVE >= round(ess)
+    return f"{shown_ess(ess)}{f' (just above {ESS_ABOVE:.0f})' if hidden else ''}"
 
 
 def hdi(draws: NDArray[np.float64], probability: float) -> NDArray[np.float64]:

@@ -68,9 +68,9 @@ def _pairs(question: QuestionFit, modes: tuple[str, ...]) -> list[Equivalence]:
         lead = ability[:, i : i + 1] - ability[:, i + 1 :]
         low, high = hdi(lead, HDI_PROBABILITY)
         above, below = (lead > EQUIVALENT_BELOW).mean(axis=0), (lead < -EQUIVALENT_BELOW).mean(axis=0)
+        equal = (np.abs(lead) <= EQUIVALENT_BELOW).mean(axis=0)
         for k in range(lead.shape[1]):
-            p_above, p_below = float(above[k]), float(below[k])
-            p_equal = 1.0 - p_above - p_below
+            p_above, p_below, p_equal = float(above[k]), float(below[k]), float(equal[k])
             found.append(
                 Equivalence(
                     question.question.name,

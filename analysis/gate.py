@@ -11,7 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, Convergence, convergence, shown_ess, shown_rhat
+from analysis.diagnostics import (
+    ESS_ABOVE,
+    RHAT_BELOW,
+    Convergence,
+    convergence,
+    ess_in_words,
+    rhat_in_words,
+)
 from analysis.results import Draws
 from analysis.summaries import ranks
 
@@ -48,9 +55,14 @@ class Gate(Convergence):
         return (
             f"The sampling did not converge: {failed:,} of {len(self.names):,} quantities "
             f"{'fails' if failed == 1 else 'fail'}. The worst is {self.names[worst]}: R-hat "
-            f"{shown_rhat(float(self.rhat[worst]))} (must be below {RHAT_BELOW}), effective sample size "
-            f"{shown_ess(float(ess[worst]))} (must be above {ESS_ABOVE:.0f})."
+            f"{_judged(rhat_in_words(float(self.rhat[worst])), f'must be below {RHAT_BELOW}')}, effective "
+            f"sample size {_judged(ess_in_words(float(ess[worst])), f'must be above {ESS_ABOVE:.0f}')}."
         )
+
+
+def _judged(value: str, limit: str) -> str:
+    """A value with its limit, unless its words name the limit already."""
+    return value if value.endswith(")") else f"{value} ({limit})"
 
 
 def reported_convergence(draws: Draws, modes: Sequence[str]) -> Gate:

@@ -70,6 +70,7 @@ def examine(
         warnings.append("Every answer is a tie: the modes can't be told apart.")
     else:
         warnings += _separation(modes, wins, ties)
+    warnings += _never_shown(modes, compared)
     few = [mode for mode, n in zip(modes, compared.sum(axis=1), strict=True) if n < FEW_COMPARISONS]
     if few:
         warnings.append(
@@ -164,6 +165,20 @@ def has_exchanged_sides(counts: Counts) -> bool:
 
 def _ordered_pairs(counts: Counts) -> set[tuple[int, int]]:
     return {(int(a), int(b)) for a, b in zip(counts.mode_a, counts.mode_b, strict=True)}
+
+
+def _never_shown(modes: tuple[str, ...], compared: NDArray[np.int64]) -> list[str]:
+    """Pairs without any answer, although other pairs connect their modes."""
+    never = np.argwhere(np.triu(compared == 0, 1))
+    pairs = [f"{isolated(modes[i])} and {isolated(modes[j])}" for i, j in never]
+    if not pairs:
+        return []
+    where = "; pairwise.csv has them all, with n = 0" if len(pairs) > _LISTED else ""
+    return [
+        f"Never shown against each other: {'; '.join(pairs[:_LISTED])}"
+        + (f"; and {len(pairs) - _LISTED:,} more pairs" if len(pairs) > _LISTED else "")
+        + f". Which of two such modes is above the other follows from the other pairs alone{where}."
+    ]
 
 
 def _sides(counts: Counts) -> list[str]:

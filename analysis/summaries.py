@@ -29,7 +29,7 @@ def mode_results(draws: Draws, modes: tuple[str, ...]) -> tuple[ModeResult, ...]
     """Posterior summary of every mode, in the order of the draws' last axis."""
     ability, worth = _flat(draws.ability), _flat(draws.worth)
     wide, narrow = hdi(worth, HDI_PROBABILITY), hdi(worth, 0.5)
-    probabilities = rank_probabilities(ability)
+    probabilities, rank_mean = rank_probabilities(ability), ranks(ability).mean(axis=0)
     return tuple(
         ModeResult(
             mode=mode,
@@ -42,7 +42,7 @@ def mode_results(draws: Draws, modes: tuple[str, ...]) -> tuple[ModeResult, ...]
             worth_50_low=float(narrow[0, k]),
             worth_50_high=float(narrow[1, k]),
             p_best=float(probabilities[k, 0]),
-            rank_mean=float(probabilities[k] @ np.arange(1, len(modes) + 1)),
+            rank_mean=float(rank_mean[k]),
             rank_probabilities=tuple(float(p) for p in probabilities[k]),
         )
         for k, mode in enumerate(modes)

@@ -4,12 +4,23 @@ from dataclasses import dataclass, replace
 
 from analysis.power.glance import glance
 from analysis.power.plan import Plan, check_plan, mode_pairs
-from analysis.power.scenario import CUTS, SIDE_EFFECT, SUBJECT_SD, Conclusion, Scenario, cuts_for_ties
+from analysis.power.scenario import (
+    CUTS,
+    EQUALITY_CONFIDENCE,
+    SIDE_EFFECT,
+    SUBJECT_SD,
+    Conclusion,
+    Scenario,
+    cuts_for_ties,
+)
 from data.errors import InputError, one_of
 from data.study import Study
 
 _MULTIPLES = (1, 2, 3, 4, 6)
 """Sizes that are tried where none are given, in planned numbers."""
+_OF_ALL_MODES: dict[str, Kind] = {"best": "best", "order": "order", "equal": "equal"}
+_ABOUT_ENOUGH = (0.5, 0.75, 1.0, 1.5)
+"""The same for equality, of which the planned numbers mostly show nothing, in the number that should do."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +34,9 @@ class Wish:
     ties : float or None
         Share of answers "about the same", instead of cut-points.
     conclusion : str
-        ``best``, ``order``, or two modes as ``M1:M3``.
+        ``best``, ``order``, two modes as ``M1:M3``, ``equal``, or two modes as ``M1=M3``.
+    confidence : float or None
+        None is 0.95, or for equality what a report calls it from.
     """
 
     worth: str = ""
@@ -35,7 +48,7 @@ class Wish:
     subject_sd: float = SUBJECT_SD
     side_effect: float = SIDE_EFFECT
     conclusion: str = "best"
-    confidence: float = Conclusion.confidence
+    confidence: float | None = None
     wanted: float = Plan.wanted
     replicates: int = Plan.replicates
     seed: int = Plan.seed
@@ -52,8 +65,10 @@ def plan_of(study: Study, wish: Wish) -> Plan:
     levels = wish.levels or min(question.levels for question in study.questions)
     if wish.cuts and wish.ties is not None:
         raise InputError("ties, cuts: give one of them; the share of ties decides the cut-points")
+    conclusion = conclusion_of(study, wish.conclusion, wish.confidence)
+    last = 1.0 if conclusion.is_equality else 2.0
     scenario = Scenario(
-        worth=numbers("worth", wish.worth) or (1.0,) * (len(study.modes) - 1) + (2.0,),
+        worth=numbers("worth", wish.worth) or (1.0,) * (len(study.modes) - 1) + (last,),
         levels=levels,
         cuts=numbers("cuts", wish.cuts) or CUTS.get(levels, ()),
         subject_sd=wish.subject_sd,
@@ -65,13 +80,25 @@ def plan_of(study: Study, wish: Wish) -> Plan:
         participants=whole_numbers("participants", wish.participants)
         or tuple(k * study.protocol.planned_participants for k in _MULTIPLES),
         repetitions=whole_numbers("repetitions", wish.repetitions) or (study.protocol.repetitions,),
-        conclusion=conclusion_of(study, wish.conclusion, wish.confidence),
+        conclusion=conclusion,
         wanted=wish.wanted,
         replicates=wish.replicates,
         seed=wish.seed,
     )
     check_plan(plan)
-    return plan if wish.ties is None else _with_ties(plan, wish.ties)
+    plan = plan if wish.ties is None else _with_ties(plan, wish.ties)
+    return _about_enough(plan) if conclusion.is_equality and not wish.participants else plan
+
+
+def _about_enough(plan: Plan) -> Plan:
+    """The same with numbers of participants about the one that a quick estimate calls enough."""
+    enough = glance(plan, max(plan.repetitions)).enough
+    if enough is None:
+        return plan
+    sizes = tuple(max(1, round(share * enough)) for share in _ABOUT_ENOUGH)
+    found = replace(plan, participants=tuple(dict.fromkeys(sizes)))
+    check_plan(found)
+    return found
 
 
 def _with_ties(plan: Plan, share: float) -> Plan:
@@ -79,22 +106,28 @@ def _with_ties(plan: Plan, share: float) -> Plan:
     return replace(plan, scenario=replace(plan.scenario, cuts=cuts))
 
 
-def conclusion_of(study: Study, text: str, confidence: float) -> Conclusion:
-    """What a study shall conclude, from ``best``, ``order`` or two modes as ``M1:M3``."""
-    if text == "best":
-        return Conclusion("best", confidence)
-    if text == "order":
-        return Conclusion("order", confidence)
-    names = text.split(":")
+def conclusion_of(study: Study, text: str, confidence: float | None = None) -> Conclusion:
+    """What a study shall conclude, from ``best``, ``order``, ``M1:M3``, ``equal`` or ``M1=M3``."""
+    is_equality = text == "equal" or ("=" in text and ":" not in text)
+    if confidence is None:
+        confidence = EQUALITY_CONFIDENCE if is_equality else Conclusion.confidence
+    if text in _OF_ALL_MODES:
+        return Conclusion(_OF_ALL_MODES[text], confidence)
+    names = text.split("=" if is_equality else ":")
     if len(names) != 2:
+        pair = study.mode_names[:2]
         raise one_of(
-            "conclusion", text, ("best", "order", "two modes such as " + ":".join(study.mode_names[:2]))
+            "conclusion",
+            text,
+            ("best", "order", "equal", f"two modes such as {':'.join(pair)} or {'='.join(pair)}"),
         )
     for name in names:
         if name not in study.mode_names:
             raise one_of("conclusion: mode", name, study.mode_names)
     return Conclusion(
-        "pair", confidence, (study.mode_names.index(names[0]), study.mode_names.index(names[1]))
+        "equal pair" if is_equality else "pair",
+        confidence,
+        (study.mode_names.index(names[0]), study.mode_names.index(names[1])),
     )
 
 

@@ -18,6 +18,7 @@ from app.cli.progress import Report, progress
 from app.studies import open_study
 from data.errors import InputError
 from data.locations import check_folder, default_store
+from data.records import Look
 from data.response_csv import read_response_csv
 from data.responses import BackgroundTable, LagTable, MetricTable, PaceTable, ResponseTable, StuckTable
 from data.store import Store
@@ -54,6 +55,7 @@ class _Evidence:
     metrics: MetricTable | None = None
     background: BackgroundTable | None = None
     pace: PaceTable | None = None
+    looks: tuple[Look, ...] = ()
 
 
 def make_report(request: Request) -> ReportResult:
@@ -101,14 +103,22 @@ def make_report(request: Request) -> ReportResult:
             metrics=evidence.metrics,
             refitted=refitted,
             pace=evidence.pace,
+            looks=evidence.looks,
         )
-    for warning in fitted.warnings:
-        print(f"note: {warning}", file=sys.stderr)
-    if excluded is not None:
-        left, total = len(excluded.comparisons), excluded.total
-        print(f"note: {left} of {total} comparisons are left out because of lag", file=sys.stderr)
+    if request.responses is None:
+        _keep_look(request, everything.table)
+    for caution in written.notes:
+        print(f"note: {caution}", file=sys.stderr)
+    if excluded is not None and not excluded.comparisons:
+        print(f"note: none of {excluded.total} comparisons is left out because of lag", file=sys.stderr)
     print_ranking(fitted, Console(), is_simulated=evidence.table.is_simulated)
     return written
+
+
+def _keep_look(request: Request, table: ResponseTable) -> None:
+    """Results of people are now known to whoever made the report: the audit log keeps that."""
+    with Store.open(request.store or default_store(), create=False) as store:
+        store.log_look(store.study(request.study), table.look, "elbowroom report")
 
 
 def _refitted(evidence: _Evidence, fitted: Fit) -> Refits:
@@ -173,4 +183,5 @@ def _read(request: Request) -> _Evidence:
             metrics=store.metric_table(stored, include_simulated=request.include_simulated),
             background=store.background_table(stored, include_simulated=request.include_simulated),
             pace=store.pace_table(stored, include_simulated=request.include_simulated),
+            looks=store.looks(stored),
         )

@@ -175,6 +175,21 @@ class ExternalRun:
 
 
 @dataclass(frozen=True)
+class Look:
+    """Results of people were shown, while a study ran or after it.
+
+    Attributes
+    ----------
+    participants, answers : int
+        People whose answers were among the results, and their answers, without attention checks and
+        without those of simulated participants.
+    """
+
+    participants: int
+    answers: int
+
+
+@dataclass(frozen=True)
 class AuditEntry:
     """One line of the append-only audit log; ``sha256`` chains it to the line before."""
 

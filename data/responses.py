@@ -7,6 +7,7 @@ from typing import Self
 
 import pandas as pd
 
+from data.records import Look
 from data.study import BackgroundQuestion
 
 
@@ -74,6 +75,13 @@ class ResponseTable:
     def modes_of(self, question: QuestionScale) -> tuple[str, ...]:
         """The modes that a question is about, in the order of the table."""
         return question.modes or self.modes
+
+    @property
+    def look(self) -> Look:
+        """What whoever sees results of these answers has seen of people."""
+        rows = self.rows[(self.rows["source"] != "simulated") & ~self.rows["check"].astype(bool)]
+        people = rows.loc[rows["participant"] != "", "participant"].nunique()
+        return Look(int(people), int(rows["count"].sum()))
 
     def without(self, comparisons: Collection[str]) -> Self:
         """The same without the answers to some comparisons; modes and questions stay."""

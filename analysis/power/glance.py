@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import expit
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import expit, ndtr
 
+from analysis.equivalence import EQUIVALENT_BELOW
 from analysis.model import SIDE_EFFECT_SD
 from analysis.power.plan import Plan, mode_pairs
 from analysis.power.scenario import Conclusion, Scenario
@@ -37,6 +38,8 @@ class Glance:
 
     def share(self, participants: int) -> float:
         """Expected share of studies of this size that come to the right conclusion."""
+        if self.plan.conclusion.is_equality:
+            return _equal_share(self.plan, self._information, participants)
         contrasts = planted_contrasts(self.plan.scenario, self.plan.conclusion)
         if contrasts is None:
             return 0.0
@@ -94,6 +97,48 @@ def person_information(pairs: Sequence[tuple[int, int]], scenario: Scenario, rep
     ndarray, shape (modes, modes)
         The mean over two people, who see the sides of the pairs exchanged.
     """
+    return np.mean([a.information for a in answers_of_two(pairs, scenario, repetitions)], axis=0)
+
+
+@dataclass(frozen=True)
+class PersonAnswers:
+    """One person's answers as a linear observation of the free ability coordinates and the side effect.
+
+    Attributes
+    ----------
+    design : ndarray, shape (answers, modes)
+        What each answer observes.
+    each : ndarray, shape (answers,)
+        Variance of each answer about what the person feels.
+    own : ndarray, shape (answers, answers)
+        Covariance of what the person feels about what the group does.
+    """
+
+    design: FloatArray
+    each: FloatArray
+    own: FloatArray
+
+    @property
+    def information(self) -> FloatArray:
+        """What the answers tell if the person's own deviations are known to be shared by them."""
+        return np.asarray(self.design.T @ np.linalg.solve(np.diag(self.each) + self.own, self.design))
+
+    @property
+    def pooled_information(self) -> FloatArray:
+        """What they would tell if they came from as many people as there are answers."""
+        return np.asarray(self.design.T @ (self.design / self.each[:, None]))
+
+    @property
+    def pooled_scatter(self) -> FloatArray:
+        """Covariance of the weighted answers that a pooled estimate adds up, as they really are."""
+        weighted = self.design / self.each[:, None]
+        return np.asarray(weighted.T @ (np.diag(self.each) + self.own) @ weighted)
+
+
+def answers_of_two(
+    pairs: Sequence[tuple[int, int]], scenario: Scenario, repetitions: int
+) -> tuple[PersonAnswers, ...]:
+    """Answers of two people who see the sides of the pairs exchanged."""
     basis = zero_sum_basis(len(scenario.worth))
     found = []
     for member in (0, 1):
@@ -104,11 +149,10 @@ def person_information(pairs: Sequence[tuple[int, int]], scenario: Scenario, rep
         ]
         difference = np.array([basis[a] - basis[b] for a, b in sides])
         lead = difference @ (basis.T @ scenario.ability) + scenario.side_effect
-        noise = np.diag(1.0 / _answer_information(lead, scenario))
-        noise += scenario.subject_sd**2 * difference @ difference.T
         design = np.column_stack([difference, np.ones(len(sides))])
-        found.append(design.T @ np.linalg.solve(noise, design))
-    return np.mean(found, axis=0)
+        own = scenario.subject_sd**2 * difference @ difference.T
+        found.append(PersonAnswers(design, 1.0 / _answer_information(lead, scenario), own))
+    return tuple(found)
 
 
 def _answer_information(lead: FloatArray, scenario: Scenario) -> FloatArray:
@@ -124,18 +168,55 @@ def _answer_information(lead: FloatArray, scenario: Scenario) -> FloatArray:
     return np.maximum(information @ _WEIGHTS / _WEIGHTS.sum(), 1e-9)
 
 
+def _equal_share(plan: Plan, one: FloatArray, participants: int) -> float:
+    """Share of the posterior's possible means from which each pair is called equal in practice."""
+    conclusion, scenario = plan.conclusion, plan.scenario
+    if not conclusion.can_be_right(scenario):
+        return 0.0
+    n_modes = len(scenario.worth)
+    basis = zero_sum_basis(n_modes)
+    means, covariance = _posterior(plan, one, participants, _STUDIES * 4)
+    called = np.ones(len(means), dtype=bool)
+    for i, j in conclusion.equal_pairs(n_modes):
+        to = basis[i] - basis[j]
+        called &= equal_chance(means[:, :-1] @ to, to @ covariance[:-1, :-1] @ to) > conclusion.confidence
+    return float(called.mean())
+
+
+def equal_chance(mean: ArrayLike, variance: ArrayLike) -> FloatArray:
+    """Probability that a normal difference of abilities lies within practical equality."""
+    mean, sd = np.asarray(mean, dtype=np.float64), np.sqrt(variance)
+    return np.asarray(ndtr((EQUIVALENT_BELOW - mean) / sd) - ndtr((-EQUIVALENT_BELOW - mean) / sd))
+
+
+def posterior_covariance(one: FloatArray, people: float) -> FloatArray:
+    """Posterior covariance of the free ability coordinates and the side effect.
+
+    Parameters
+    ----------
+    one : ndarray, shape (modes, modes)
+        A person's information on them.
+    people : float
+    """
+    prior = np.diag([1.0 / FitSettings.prior_sd**2] * (len(one) - 1) + [1.0 / SIDE_EFFECT_SD**2])
+    return np.asarray(np.linalg.inv(people * one + prior))
+
+
+def _posterior(plan: Plan, one: FloatArray, participants: int, studies: int) -> tuple[FloatArray, FloatArray]:
+    """Posterior means of so many possible studies, and the covariance of each."""
+    known, covariance = participants * one, posterior_covariance(one, participants)
+    truth = np.append(zero_sum_basis(len(one)).T @ plan.scenario.ability, plan.scenario.side_effect)
+    # The same random numbers for every size, so that the share grows smoothly.
+    noise = np.random.default_rng(1).standard_normal((studies, len(one)))
+    return covariance @ known @ truth + noise @ (covariance @ np.linalg.cholesky(known)).T, covariance
+
+
 def _share(plan: Plan, contrasts: FloatArray, one: FloatArray, participants: int) -> float:
     """Share of the posterior's possible means from which the conclusion is drawn."""
     n_free = len(plan.scenario.worth) - 1
     basis = zero_sum_basis(n_free + 1)
-    prior = np.diag([1.0 / FitSettings.prior_sd**2] * n_free + [1.0 / SIDE_EFFECT_SD**2])
-    known = participants * one
-    covariance = np.linalg.inv(known + prior)
-    truth = np.append(basis.T @ plan.scenario.ability, plan.scenario.side_effect)
-    # The same random numbers for every size, so that the share grows smoothly.
-    studies, draws = np.random.default_rng(1).standard_normal((2, _STUDIES, n_free + 1))
-    spread = covariance @ np.linalg.cholesky(known)
-    means = covariance @ known @ truth + studies @ spread.T
+    means, covariance = _posterior(plan, one, participants, _STUDIES)
+    draws = np.random.default_rng(1).standard_normal((2, _STUDIES, n_free + 1))[1]
     to = contrasts @ basis
     lead = means[:, :n_free] @ to.T
     around = draws @ np.linalg.cholesky(covariance).T[:, :n_free] @ to.T

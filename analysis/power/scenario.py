@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -9,10 +10,12 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import expit, ndtr
 
+from analysis.equivalence import EQUIVALENT_BELOW
+from analysis.figures.labels import LIKELY
 from analysis.results import QuestionFit
 from data.errors import InputError
 
-Kind = Literal["best", "order", "pair"]
+Kind = Literal["best", "order", "pair", "equal", "equal pair"]
 Verdict = Literal["right", "wrong", "open", "unranked"]
 
 LEVELS = 3
@@ -124,17 +127,27 @@ class Conclusion:
 
     Attributes
     ----------
-    kind : {"best", "order", "pair"}
-        Which mode is best, the whole order of the modes, or which of two is better.
+    kind : {"best", "order", "pair", "equal", "equal pair"}
+        Which mode is best, the whole order of the modes, which of two is better; that all modes, or two, are
+        equal in practice.
     confidence : float
         Posterior probability above which it counts as concluded.
     pair : tuple of two int
-        Places of the two modes, for ``pair`` alone.
+        Places of the two modes, for ``pair`` and ``equal pair`` alone.
     """
 
     kind: Kind = "best"
     confidence: float = 0.95
     pair: tuple[int, int] = (0, 1)
+
+    @property
+    def is_equality(self) -> bool:
+        """Whether it says that modes are equal in practice, and not which is better."""
+        return self.kind in ("equal", "equal pair")
+
+    def equal_pairs(self, n_modes: int) -> tuple[tuple[int, int], ...]:
+        """The pairs that it says are equal in practice."""
+        return (self.pair,) if self.kind == "equal pair" else tuple(combinations(range(n_modes), 2))
 
     def can_be_right(self, scenario: Scenario) -> bool:
         """Whether anything is planted that could be found; if not, whatever is concluded is wrong."""
@@ -145,6 +158,12 @@ class Conclusion:
                 return len(set(scenario.worth)) == len(scenario.worth)
             case "pair":
                 return scenario.worth[self.pair[0]] != scenario.worth[self.pair[1]]
+            case "equal" | "equal pair":
+                ability = scenario.ability
+                return all(
+                    abs(ability[i] - ability[j]) <= EQUIVALENT_BELOW
+                    for i, j in self.equal_pairs(len(ability))
+                )
 
     def of(self, question: QuestionFit, scenario: Scenario) -> Verdict:
         """What a fitted question comes to, against what was planted."""
@@ -168,19 +187,33 @@ class Conclusion:
                 chance = max(above, 1.0 - above)
                 concluded = i if above > 0.5 else j
                 truth = max(self.pair, key=lambda k: scenario.worth[k])
+            case "equal" | "equal pair":
+                # As a report reads its pairs: each by itself.
+                chance = min(
+                    float((np.abs(ability[:, i] - ability[:, j]) <= EQUIVALENT_BELOW).mean())
+                    for i, j in self.equal_pairs(ability.shape[1])
+                )
+                truth = concluded = "equal"
         if chance <= self.confidence:
             return "open"
         return "right" if concluded == truth and self.can_be_right(scenario) else "wrong"
 
     def sentence(self, names: Sequence[str]) -> str:
         """What counts as a conclusion."""
+        i, j = (names[k] for k in self.pair)
+        alike = f"equal in practice (at most {EQUIVALENT_BELOW:.2f} logits apart)"
         what = {
             "best": "which mode is best",
             "order": "the whole order of the modes",
-            "pair": f"which of {names[self.pair[0]]} and {names[self.pair[1]]} is better",
+            "pair": f"which of {i} and {j} is better",
+            "equal": f"that all modes are {alike}",
+            "equal pair": f"that {i} and {j} are {alike}",
         }[self.kind]
-        return f"{what}, with a probability above {self.confidence:g}"
+        each = " of each two" if self.kind == "equal" and len(names) > 2 else ""
+        return f"{what},{each} with a probability above {self.confidence:g}"
 
 
+EQUALITY_CONFIDENCE = LIKELY
+"""Probability from which a report calls two modes equal in practice; a conclusion about equality takes it."""
 BEST = Conclusion()
 """Which mode is best, with a probability above 0.95."""

@@ -22,8 +22,13 @@ def _answer(result: Power, repetitions: int) -> str:
     first, last = points[0], points[-1]
     if not result.plan.conclusion.can_be_right(result.plan.scenario):
         drawn = _share(last.wrong_share, last.wrong_low, last.wrong_high)
+        why = (
+            "Modes are planted that are not equal in practice"
+            if result.plan.conclusion.is_equality
+            else "None is planted as better"
+        )
         return (
-            f"None is planted as better, so every conclusion is wrong; {drawn} of studies with "
+            f"{why}, so every conclusion is wrong; {drawn} of studies with "
             f"{last.participants} participants draw one."
         )
     if curve is None:

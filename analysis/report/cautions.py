@@ -6,7 +6,7 @@ from math import isnan
 import numpy as np
 
 from analysis.data_quality import DataQuality
-from analysis.diagnostics import shown_ess, shown_rhat
+from analysis.diagnostics import ess_in_words, rhat_in_words
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.lag import LagExclusion, ModeDelay
 from analysis.predictive import PredictiveChecks
@@ -14,6 +14,7 @@ from analysis.report.findings import Finding, listed
 from analysis.report.model_cautions import model_cautions
 from analysis.report.parameter_cautions import about_priors, about_sides
 from analysis.report.straight_lines import about_lines
+from analysis.report.tables import neutralised_names
 from analysis.results import Fit, QuestionFit
 from analysis.straight_lining import StraightLining
 from data.responses import ResponseTable
@@ -52,6 +53,7 @@ def cautions(
     quality: DataQuality | None = None,
     model_checks: PredictiveChecks | None = None,
     lines: StraightLining | None = None,
+    about_size: Sequence[str] = (),
 ) -> tuple[str, ...]:
     """Plain sentences, the gravest first."""
     quality = quality or DataQuality()
@@ -60,6 +62,7 @@ def cautions(
         *unknown_sides(table, fit.settings.side_effect),
         *unequal_delays(quality.delays),
         *_about_the_number(fit),
+        *about_size,
         *_about_the_unanswered(fit, study),
         *_about_the_questions(fit),
         *fit.warnings,
@@ -70,7 +73,8 @@ def cautions(
         *about_lines(lines or StraightLining()),
         *_about_what_is_left_out(quality.excluded),
         *_about_checks(checks),
-        *_about_convergence(fit),
+        *_about_names(fit),
+        *about_convergence(fit),
     ]
     return tuple(dict.fromkeys(said))
 
@@ -214,6 +218,16 @@ def _about_what_is_left_out(excluded: LagExclusion | None) -> list[str]:
     ]
 
 
+def _about_names(fit: Fit) -> list[str]:
+    changed = neutralised_names(fit)
+    if not changed:
+        return []
+    return [
+        "In the CSV files these names have a ' before them, so that no spreadsheet runs them: "
+        + ", ".join(isolated(name) for name in changed)
+    ]
+
+
 def _about_checks(checks: int) -> list[str]:
     if not checks:
         return []
@@ -223,11 +237,12 @@ def _about_checks(checks: int) -> list[str]:
     return [f"{answers} left out of the model."]
 
 
-def _about_convergence(fit: Fit) -> list[str]:
+def about_convergence(fit: Fit) -> list[str]:
+    """Whether the sampler converged, in figures."""
     if np.isnan(fit.rhat_max):
         return []
-    ess = shown_ess(fit.ess_min)
-    figures = f"largest R-hat {shown_rhat(fit.rhat_max)}, smallest effective sample size {ess}"
+    ess = ess_in_words(fit.ess_min)
+    figures = f"largest R-hat {rhat_in_words(fit.rhat_max)}, smallest effective sample size {ess}"
     if fit.settings.engine != "gibbs":
         figures += f", {_divergences(fit)}"
     if fit.converged:

@@ -18,7 +18,7 @@ from analysis.figures.worth import draw_worth
 from analysis.refits import Refits
 from analysis.report import page as pages
 from analysis.report.cautions import unanswered
-from analysis.report.findings import findings, lead, listed
+from analysis.report.findings import Finding, findings, first_sentence, lead, listed
 from analysis.report.methods import methods
 from analysis.report.page import Page, Part, Section
 from analysis.report.pairs import equivalence_section, strength_section
@@ -37,6 +37,8 @@ from analysis.stuck import StuckRate
 from analysis.stuck_contrasts import StuckContrast
 from data.responses import ResponseTable
 from data.study import Study
+
+_ERRORS = " In the numbers, ± is the Monte Carlo standard error: by how much another seed changes a value."
 
 
 def simulated_tag(table: ResponseTable) -> str:
@@ -67,11 +69,11 @@ def compose(
     silent = [(q.name, q.short) for q in study.questions if q.name in names] if study is not None else []
     worth, *parts = _numbered(
         [
-            Part("", _known(_worth(fit, tag))),
+            Part("", _known(_worth(fit, look, tag))),
             Part(
                 "The modes",
                 _known(
-                    _pairwise(fit, tag),
+                    _pairwise(fit, look, tag),
                     equivalence_section(look, fit, tag),
                     _ranks(fit, tag),
                     _answers(fit, look, tag),
@@ -102,7 +104,7 @@ def compose(
             Part(
                 "The model",
                 _known(
-                    _parameters(fit, tag),
+                    _parameters(fit, look, tag),
                     predictive_section(look, fit, tag),
                     *refit_sections(refitted),
                     _diagnostics(fit, tag),
@@ -115,10 +117,16 @@ def compose(
         subtitle=_subtitle(table, fit, study),
         tag=tag,
         lead=lead(
-            found, rates, tag, [short or name for name, short in silent], likely_difference(contrasts, rates)
+            found,
+            rates,
+            tag,
+            [short or name for name, short in silent],
+            likely_difference(contrasts, rates),
+            look.equality,
         ),
         worth=worth.sections[0],
         findings=found,
+        about_findings=_about_findings(found, look),
         unranked=tuple(q for q in fit.questions if not q.ranked),
         unanswered=tuple(f"{name} {short}".strip() for name, short in silent),
         cautions=tuple(cautions),
@@ -184,7 +192,7 @@ def _counted(n: int, noun: str) -> str:
     return f"{n:,} {noun}{'' if n == 1 else 's'}"
 
 
-def _worth(fit: Fit, tag: str) -> Section:
+def _worth(fit: Fit, look: CloserLook, tag: str) -> Section:
     sizes = {len(q.mode_names) for q in fit.questions if q.ranked} or {len(fit.modes)}
     worth = 1 / min(sizes)
     shown = f"{worth:.2f}" if worth >= 0.095 else f"{worth:.3f}"
@@ -195,6 +203,7 @@ def _worth(fit: Fit, tag: str) -> Section:
         f"Worth of each mode: they add up to 1 in each question, and {equal} is no preference. Thin "
         "lines are 94 % credible intervals, thick lines 50 %. “First %” is the chance that the mode ranks "
         "first, bold from 80 on."
+        f"{_ERRORS if look.errors else ''}"
     )
     if many:
         caption += " Modes are sorted by worth."
@@ -206,20 +215,35 @@ def _worth(fit: Fit, tag: str) -> Section:
         words = "No question is ranked, so there are no worths to draw: the reasons stand above."
         return Section(heading, (), "", "", None, words=(words,))
     drawings = draw_by_modes(fit.questions, lambda some, modes: draw_worth(some, modes, tag))
-    return Section(heading, drawings, "", caption, pages.worth_table(fit), "appended")
+    return Section(heading, drawings, "", caption, pages.worth_table(fit, look.errors), "appended")
 
 
-def _pairwise(fit: Fit, tag: str) -> Section | None:
+def _about_findings(found: Sequence[Finding], look: CloserLook) -> tuple[str, ...]:
+    """What the likely first places are worth together, and how sure the sampler is of their chances."""
+    said = [sentence] if (sentence := first_sentence(found)) else []
+    named = {(f.question.question.name, f.first) for f in found if f.first}
+    errors = [e.mcse for e in look.errors if e.quantity == "p_best" and (e.question, e.mode_i) in named]
+    if errors:
+        said.append(
+            f"Another seed of the sampler changes these chances by up to {100 * max(errors):.1f} percentage "
+            f"points (Monte Carlo standard error)."
+        )
+    return tuple(said)
+
+
+def _pairwise(fit: Fit, look: CloserLook, tag: str) -> Section | None:
     ranked = [q for q in fit.questions if q.ranked]
     if not ranked:
         return None
     caption = "Chance, in per cent, that the row's mode ranks above the column's; darker is more likely."
     if max(len(q.modes) for q in ranked) <= IN_ORDER_UP_TO:
         caption += " Below it the answers behind it: for the row's mode, ties, for the column's."
+        if any(p.n == 0 for q in ranked for p in q.pairs):
+            caption += " Where they are 0, the pair was never shown: its chance follows from other pairs."
     else:
         caption += " Modes are sorted by their mean rank."
     drawings = draw_by_modes(ranked, lambda some, modes: draw_pairwise(some, modes, tag))
-    return Section("Pair by pair", drawings, "", caption, pages.pairwise_table(fit))
+    return Section("Pair by pair", drawings, "", caption, pages.pairwise_table(fit, look.errors))
 
 
 def _ranks(fit: Fit, tag: str) -> Section | None:
@@ -252,7 +276,7 @@ def _answers(fit: Fit, look: CloserLook, tag: str) -> Section:
     return Section("The answers", drawings, "", caption, pages.answers_table(fit, shares), "here")
 
 
-def _parameters(fit: Fit, tag: str) -> Section | None:
+def _parameters(fit: Fit, look: CloserLook, tag: str) -> Section | None:
     drawing = draw_parameters(fit.questions, tag)
     if drawing is None:
         return None
@@ -275,13 +299,13 @@ def _parameters(fit: Fit, tag: str) -> Section | None:
     if "subject_sd" in names:
         about.append("people")
         said.append("Between people: spread of the participants' own abilities around the group's.")
-    caption = f"{' '.join(said)} On the logit scale, with 94 % credible intervals."
+    caption = f"{' '.join(said)} On the logit scale, with 94 % credible intervals.{_ERRORS}"
     return Section(
         f"{listed(about).capitalize()}",
         (drawing,),
         "",
         caption,
-        pages.parameters_table(fit),
+        pages.parameters_table(fit, look.errors),
         "appended",
     )
 
@@ -297,7 +321,8 @@ def _diagnostics(fit: Fit, tag: str) -> Section:
     drawings = (drawing,) if drawing else ()
     words = (
         "R-hat compares the chains with each other (1: they agree), ESS is how many independent draws they "
-        f"are worth. A question is ranked if the largest R-hat is below {RHAT_BELOW} and the smallest ESS "
+        "are worth: the smaller of that for the bulk and that for the tails, which is of the 5 % and 95 % "
+        f"quantiles. A question is ranked if the largest R-hat is below {RHAT_BELOW} and the smallest ESS "
         f"above {ESS_ABOVE:.0f}.",
     )
     table = pages.diagnostics_table(fit)

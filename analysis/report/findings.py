@@ -4,10 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from analysis.claims import Claim, joint_sentence
+from analysis.equality_reach import EqualityReach
 from analysis.figures.labels import LIKELY, isolated, percent_in_words
 from analysis.results import Fit, QuestionFit
 from analysis.stuck import StuckRate
 
+FIRSTS = "What the answers settle"
 _MOST_NAMED = 6
 _TOGETHER = 0.94
 """Chance that the modes which are named as an open question's possible firsts hold the place together."""
@@ -73,6 +76,20 @@ def findings(fit: Fit) -> tuple[Finding, ...]:
     return tuple(_finding(question, label) for question, label in zip(fit.questions, labels, strict=True))
 
 
+def first_claims(found: Sequence[Finding]) -> tuple[Claim, ...]:
+    """The first places that are called likely."""
+    return tuple(
+        Claim(FIRSTS, f"{isolated(f.first)} ranks first for {f.label}.", f.chance, f.question.question.name)
+        for f in found
+        if f.reading == "likely"
+    )
+
+
+def first_sentence(found: Sequence[Finding]) -> str:
+    """What the likely first places are worth together; empty if there are none."""
+    return joint_sentence(first_claims(found), "named first", "named firsts")
+
+
 def chances_above(question: QuestionFit, mode: str) -> dict[str, float]:
     """Posterior probability that one mode ranks above each of the others."""
     ahead = {p.mode_j: p.p_i_above_j for p in question.pairs if p.mode_i == mode}
@@ -99,6 +116,7 @@ def lead(
     tag: str,
     unanswered: Sequence[str] = (),
     stuck_difference: str | None = None,
+    equality: EqualityReach | None = None,
 ) -> tuple[Phrase, ...]:
     """The first paragraph of the report, careful and plain.
 
@@ -111,6 +129,8 @@ def lead(
     stuck_difference : str or None
         The surest difference of two stuck rates in people in general; empty if none is likely, None if rates
         were not compared.
+    equality : EqualityReach or None
+        What the study could show of equal modes, where that is known.
     """
     likely = [f for f in found if f.reading == "likely"]
     still_open = [f for f in found if f.reading == "open"]
@@ -129,6 +149,10 @@ def lead(
             *_likely_ones(likely),
             *_open_ones(still_open, likely),
         ]
+    if likely:
+        phrases.append(Phrase(f"{first_sentence(found)} "))
+    if still_open and equality is not None and equality.is_too_small:
+        phrases.append(Phrase(f"{equality.about_open} "))
     if len(found) > 1:
         phrases += _unranked_ones([f for f in found if f.reading == "not ranked"], len(found))
     if unanswered:

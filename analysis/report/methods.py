@@ -7,7 +7,7 @@ from math import exp, isnan, sqrt
 from markupsafe import Markup
 
 from analysis.closer_look import CloserLook
-from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, shown_ess, shown_rhat
+from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, ess_in_words, rhat_in_words
 from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
 from analysis.event_rate import LOG_RATE_SD, MEDIAN_RATE, SPREAD_SCALE, UNKNOWN_MIN
 from analysis.figures.labels import LIKELY, isolated
@@ -220,7 +220,13 @@ def _odds(logits: float) -> str:
 def _reported(fit: Fit, study: Study | None) -> str:
     paper = study is not None and study.name.startswith("carmichael2017")
     like = ", as in Figure 5 of Carmichael et al. (2017)" if paper else ""
-    several = " Questions are not corrected for being several." if len(fit.questions) > 1 else ""
+    several = (
+        " Questions are analysed one by one; of several claims, the expected number of wrong ones is the sum "
+        "of their chances to be wrong, and as questions share nothing the chance that all are right is the "
+        "product of those of the questions."
+        if len(fit.questions) > 1
+        else ""
+    )
     if any(q.mode_names != fit.modes for q in fit.questions):
         several += " Each question ranks the modes that its own comparisons connect, and no others."
     return (
@@ -261,7 +267,8 @@ def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
         f"{settings.chains} chains of {settings.draws:,} draws after {settings.tune:,} of warm-up with "
         f"{how}{accept}, seed {settings.seed}. A question counts as converged if the abilities, worths, "
         f"ranks, differences and parameters all have a rank-normalised split R-hat below {RHAT_BELOW} and "
-        f"bulk and tail effective sample sizes above {ESS_ABOVE:.0f} (Vehtari et al. 2021); if not, up to "
+        f"bulk and tail effective sample sizes above {ESS_ABOVE:.0f} (Vehtari et al. 2021; tail: of the 5 % "
+        "and 95 % quantiles); if not, up to "
         f"{max(LONGER)} times as many draws were taken before it went unranked."
     )
     if isnan(fit.rhat_max):
@@ -271,8 +278,8 @@ def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
         "" if settings.engine == "gibbs" else f", with {divergent if fit.divergences else 'none divergent'}"
     )
     return (
-        f"{said} In this report the largest R-hat is {shown_rhat(fit.rhat_max)} and the smallest effective "
-        f"sample size {shown_ess(fit.ess_min)}{diverged}."
+        f"{said} In this report the largest R-hat is {rhat_in_words(fit.rhat_max)} and the smallest "
+        f"effective sample size {ess_in_words(fit.ess_min)}{diverged}."
     )
 
 
@@ -302,8 +309,8 @@ def _closer(look: CloserLook | None) -> str:
     if any(c.participant == "all" for c in look.consistencies):
         said.append(
             "Circular triads, the coefficient of consistence zeta and the coefficient of agreement u follow "
-            "Kendall & Babington Smith (1940), a tie counting as half a preference for either; the chance of u "
-            "under coin tosses is exact, by convolution over the pairs, ties as they are."
+            "Kendall & Babington Smith (1940), a tie counting as half a preference for either; the chance "
+            "of u under coin tosses is exact, by convolution over the pairs, ties as they are."
         )
     if look.associations:
         said.append(

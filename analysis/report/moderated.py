@@ -1,8 +1,10 @@
 """The report's section on people's background: do those who said different things prefer different modes?"""
 
+from analysis.claims import joint_sentence
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.figures.moderation import draw_moderation
 from analysis.moderation import FEWEST_PEOPLE, GroupDifference, Moderation
+from analysis.report.claims import group_claims
 from analysis.report.page import Section, Table
 from analysis.results import HDI_PROBABILITY, Fit
 
@@ -81,9 +83,11 @@ def _said(found: tuple[GroupDifference, ...]) -> list[str]:
             f"None of {len(found):,} differences of worth is told apart from 0. That is not to say that the "
             f"groups agree: differences of up to {widest:.2f} are still possible."
         )
+    if joint := joint_sentence(group_claims(Moderation(found)), "difference", "differences"):
+        said += f" {joint}"
     return [
         said,
-        f"So many intervals are looked at that up to about {max(1.0, by_chance):.0f} would leave out 0 if "
+        f"So many intervals are looked at that about {by_chance:.1f} would leave out 0 if "
         "nobody differed; those of one question go together, as its worths add up to 1. Nobody was put into "
         "a group: a difference goes with what people said, and need not come from it.",
     ]

@@ -1,7 +1,7 @@
 """``report.html``: one self-contained page, from the template beside it."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
 from typing import Literal
@@ -13,6 +13,7 @@ from analysis.answer_shares import PairShares
 from analysis.diagnostics import shown_ess, shown_rhat
 from analysis.figures.labels import one_line, percent
 from analysis.figures.style import Drawing
+from analysis.monte_carlo import MonteCarloError
 from analysis.report.findings import Finding, Phrase
 from analysis.report.methods import Paragraph
 from analysis.report.references import Reference
@@ -150,6 +151,8 @@ class Page:
     ----------
     worth : Section
         The first figure, which stands before all parts.
+    about_findings : tuple of str
+        What is said below the table of first places: what the likely ones are worth together.
     unanswered : tuple of str
         Questions of the study that nobody answered, as they are called in a sentence.
     """
@@ -160,6 +163,7 @@ class Page:
     lead: tuple[Phrase, ...]
     worth: Section
     findings: tuple[Finding, ...]
+    about_findings: tuple[str, ...]
     unranked: tuple[QuestionFit, ...]
     unanswered: tuple[str, ...]
     cautions: tuple[str, ...]
@@ -220,17 +224,37 @@ def _signed(number: str) -> str:
     return number.replace("-", "\u2212")
 
 
-def worth_table(fit: Fit) -> Table:
-    """Worth, abilities and ranks of every ranked question."""
+_ErrorOf = Mapping[tuple[str, str, str, str], float]
+
+
+def _error_of(errors: Sequence[MonteCarloError]) -> _ErrorOf:
+    """Monte Carlo errors by question, mode or pair, and quantity."""
+    return {(e.question, e.mode_i, e.mode_j, e.quantity): e.mcse for e in errors}
+
+
+def _mean(text: str, error: float | None, digits: int) -> str:
+    """A mean with its Monte Carlo error where that is known."""
+    return text if error is None else f"{text} ± {error:.{digits}f}"
+
+
+def _chance(probability: float, error: float | None) -> str:
+    """A chance in per cent with its Monte Carlo error where that is known."""
+    known = "" if error is None else f" ± {100 * error:.1f}"
+    return f"{percent(probability)}{known} %"
+
+
+def worth_table(fit: Fit, errors: Sequence[MonteCarloError]) -> Table:
+    """Worth, abilities and ranks of every ranked question, with Monte Carlo errors."""
+    of = _error_of(errors)
     rows = tuple(
         (
             one_line(q.question.name),
             one_line(m.mode),
-            f"{m.worth_mean:.3f}",
+            _mean(f"{m.worth_mean:.3f}", of.get((q.question.name, m.mode, "", "worth_mean")), 3),
             f"{m.worth_hdi_low:.3f} to {m.worth_hdi_high:.3f}",
             _signed(f"{m.ability_mean:+.2f}"),
             f"{m.ability_sd:.2f}",
-            f"{percent(m.p_best)} %",
+            _chance(m.p_best, of.get((q.question.name, m.mode, "", "p_best"))),
             f"{m.rank_mean:.2f}",
         )
         for q in fit.questions
@@ -241,14 +265,17 @@ def worth_table(fit: Fit) -> Table:
     return Table(columns, (False, False, *([True] * 6)), rows, "worth.csv")
 
 
-def pairwise_table(fit: Fit) -> Table:
-    """Every pair that was asked, with its answers."""
+def pairwise_table(fit: Fit, errors: Sequence[MonteCarloError]) -> Table:
+    """Every pair that was asked, with its answers and the Monte Carlo error of its chance."""
+    of = _error_of(errors)
     rows = tuple(
         (
             one_line(q.question.name),
             one_line(p.mode_i),
             one_line(p.mode_j),
-            f"{percent(p.p_i_above_j)} %" if q.ranked else "",
+            _chance(p.p_i_above_j, of.get((q.question.name, p.mode_i, p.mode_j, "p_i_above_j")))
+            if q.ranked
+            else "",
             f"{p.n:,}",
             f"{p.wins_i:,}",
             f"{p.ties:,}",
@@ -280,13 +307,14 @@ def ranks_table(fit: Fit) -> Table:
     return Table(columns, (False, False, *([True] * (width + 1))), rows, "posterior.nc")
 
 
-def parameters_table(fit: Fit) -> Table:
-    """Side effect, cut-points and subject sd."""
+def parameters_table(fit: Fit, errors: Sequence[MonteCarloError]) -> Table:
+    """Side effect, cut-points and subject sd, with Monte Carlo errors."""
+    of = _error_of(errors)
     rows = tuple(
         (
             one_line(q.question.name),
             _PLAIN_NAMES.get(p.name, p.name),
-            _signed(f"{p.mean:.3f}"),
+            _mean(_signed(f"{p.mean:.3f}"), of.get((q.question.name, "", "", p.name)), 3),
             f"{p.sd:.3f}",
             _signed(f"{p.hdi_low:.3f} to {p.hdi_high:.3f}"),
         )

@@ -8,6 +8,7 @@ from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
 from analysis.figures.equivalence import draw_equivalence
 from analysis.figures.labels import isolated, percent, percent_in_words, shortened
 from analysis.figures.style import Drawing
+from analysis.report.claims import difference_sentence
 from analysis.report.findings import listed
 from analysis.report.page import Section, Table
 from analysis.results import Fit
@@ -45,6 +46,10 @@ def equivalence_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
     words[-1] += (
         f" {whole}{counted[0]:,} of {len(look.equivalences):,} are likely different and {counted[1]:,} open."
     )
+    if joint := difference_sentence(look.equivalences):
+        words[-1] += f" {joint}"
+    if counted[1] and look.equality is not None and look.equality.is_too_small:
+        words.append(look.equality.sentence)
     rows = tuple(
         (
             shortened(e.question, _CELL),
@@ -143,8 +148,8 @@ def _strongest(found: Sequence[Strength]) -> tuple[str, ...]:
         return ()
     p, low, high, mode, other, question = max(known)
     return (
-        f"The strongest preference is for {isolated(mode)} over {isolated(other)} on {isolated(question)}: "
-        f"someone new would say “much” with a chance of {percent_in_words(p)} ({percent(low)} to "
+        f"“Much” is most to be expected for {isolated(mode)} over {isolated(other)} on {isolated(question)}: "
+        f"the estimated chance that someone new says it is {percent_in_words(p)} ({percent(low)} to "
         f"{percent(high)} %).",
     )
 

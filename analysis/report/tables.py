@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
+from decimal import Decimal
 from pathlib import Path
 
 from analysis.checks import CheckShare
@@ -141,6 +142,7 @@ def write_closer_look(look: CloserLook, contrasts: Sequence[StuckContrast], fold
         ("strength", look.strengths),
         ("consistency", look.consistencies),
         ("predictive", look.checks.checks),
+        ("monte_carlo", look.errors),
         ("measures", look.measures),
         ("association", look.associations),
         ("stuck_contrasts", contrasts),
@@ -173,6 +175,11 @@ def _write_results(path: Path, results: Sequence[object]) -> None:
         write_csv(path, header, ([getattr(r, h) for h in header] for r in results))
 
 
+def _complement(probability: float) -> float:
+    """``1 - probability`` in as few digits as the probability itself has."""
+    return probability if math.isnan(probability) else float(1 - Decimal(repr(probability)))
+
+
 def _both_ways(fit: Fit, question: QuestionFit) -> list[Sequence[Cell]]:
     """Every ordered pair, in the order of the modes."""
     name, place = question.question.name, {mode: k for k, mode in enumerate(fit.modes)}
@@ -180,5 +187,5 @@ def _both_ways(fit: Fit, question: QuestionFit) -> list[Sequence[Cell]]:
     for p in question.pairs:
         i, j = place[p.mode_i], place[p.mode_j]
         rows[i, j] = (name, p.mode_i, p.mode_j, p.p_i_above_j, p.n, p.wins_i, p.ties, p.wins_j)
-        rows[j, i] = (name, p.mode_j, p.mode_i, 1 - p.p_i_above_j, p.n, p.wins_j, p.ties, p.wins_i)
+        rows[j, i] = (name, p.mode_j, p.mode_i, _complement(p.p_i_above_j), p.n, p.wins_j, p.ties, p.wins_i)
     return [rows[key] for key in sorted(rows)]

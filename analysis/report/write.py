@@ -1,6 +1,6 @@
 """From a fit to a report folder."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,8 +9,10 @@ from analysis.data_quality import data_quality
 from analysis.lag import LagExclusion
 from analysis.posterior import write_posterior
 from analysis.refits import Refits
-from analysis.report.cautions import cautions
+from analysis.report.cautions import about_convergence, cautions
+from analysis.report.claims import report_claims, write_findings
 from analysis.report.findings import findings
+from analysis.report.size import size_cautions
 from analysis.report.summary import Json, summarise, versions, write_summary
 from analysis.report.tables import (
     write_closer_look,
@@ -24,6 +26,7 @@ from analysis.straight_lining import straight_lining
 from analysis.stuck import StuckRate, stuck_rates
 from analysis.stuck_contrasts import stuck_contrasts
 from data.locations import writing_folder
+from data.records import Look
 from data.responses import LagTable, MetricTable, PaceTable, ResponseTable, StuckTable
 from data.study import Study
 
@@ -38,6 +41,7 @@ OWNS = (
     "worth.csv",
     "pairwise.csv",
     "parameters.csv",
+    "findings.csv",
     "stuck.csv",
     "delay.csv",
     "lag.csv",
@@ -50,6 +54,7 @@ OWNS = (
     "agreement.csv",
     "consistency.csv",
     "predictive.csv",
+    "monte_carlo.csv",
     "measures.csv",
     "association.csv",
     "stuck_contrasts.csv",
@@ -74,11 +79,14 @@ class ReportResult:
         Every file of the report, ``report.html`` first.
     summary : mapping
         The content of ``summary.json``.
+    notes : tuple of str
+        What the page cautions of, for a terminal that says by itself whether the sampler converged.
     """
 
     folder: Path
     paths: tuple[Path, ...]
     summary: Mapping[str, Json]
+    notes: tuple[str, ...]
 
 
 def write_report(
@@ -93,6 +101,7 @@ def write_report(
     metrics: MetricTable | None = None,
     refitted: Refits | None = None,
     pace: PaceTable | None = None,
+    looks: Sequence[Look] = (),
 ) -> ReportResult:
     """Write ``report.html``, its figures, and the tables, summary and posterior to a folder.
 
@@ -118,6 +127,8 @@ def write_report(
         What refits tell, for a full report.
     pace : PaceTable or None
         How long the answers took, where it is known.
+    looks : sequence of Look
+        When results were shown before, where a store kept that.
 
     Raises
     ------
@@ -133,7 +144,11 @@ def write_report(
     look = closer_look(table, fit, metrics)
     contrasts = stuck_contrasts(stuck, rates) if stuck is not None and rates else ()
     lines = straight_lining(table, fit, pace, lambda: tell(0, STEPS, "without people who answer in a line"))
-    said = cautions(table, fit, findings(fit), study, checks, quality, look.checks, lines)
+    found = findings(fit)
+    claims = report_claims(fit, found, look, refitted)
+    about_size = size_cautions(fit, found, looks, table.look)
+    said = cautions(table, fit, found, study, checks, quality, look.checks, lines, about_size)
+    notes = tuple(caution for caution in said if caution not in about_convergence(fit))
     summary = summarise(table, fit, study, said, checks, excluded)
     with writing_folder(out, marker=MARKER, owns=OWNS) as folder:
         tell(0, STEPS, "tables")
@@ -143,6 +158,7 @@ def write_report(
         write_straight_lines(lines, folder)
         if refitted is not None:
             write_refits(refitted, folder)
+        write_findings(claims, folder)
         write_summary(summary, folder / "summary.json")
         tell(1, STEPS, "posterior")
         write_posterior(fit, folder / "posterior.nc")
@@ -173,7 +189,7 @@ def write_report(
         tell(STEPS, STEPS, "")
         names = sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
     names.sort(key=lambda name: name.name != "report.html")
-    return ReportResult(out, tuple(out / name for name in names), summary)
+    return ReportResult(out, tuple(out / name for name in names), summary, notes)
 
 
 def _more_parameters(rates: tuple[StuckRate, ...]) -> list[tuple[str, Quantity]]:

@@ -16,7 +16,9 @@ def power(
     participants: Annotated[
         str,
         typer.Option(
-            "--participants", metavar="N,N,...", help="Numbers to try. Default: 1 to 6 times the planned one."
+            "--participants",
+            metavar="N,N,...",
+            help="Numbers to try. Default: 1 to 6 times the planned one; for equality about what it takes.",
         ),
     ] = "",
     repetitions: Annotated[
@@ -32,7 +34,8 @@ def power(
         typer.Option(
             "--worth",
             metavar="X,X,...",
-            help="Planted worth of each mode, in the study's order. Default: the last is twice as good.",
+            help="Planted worth of each mode, in the study's order. Default: the last is twice as good; for "
+            "equality all alike.",
         ),
     ] = "",
     levels: Annotated[
@@ -57,13 +60,17 @@ def power(
         str,
         typer.Option(
             "--conclusion",
-            metavar="best|order|M1:M3",
-            help="What is to be found: the best mode, the whole order, or the better of two.",
+            metavar="best|order|M1:M3|equal|M1=M3",
+            help="What is to be found: the best mode, the whole order, the better of two; that all modes, or "
+            "two, are equal in practice.",
         ),
     ] = "best",
     confidence: Annotated[
-        float, typer.Option("--confidence", help="Probability above which it counts as found.")
-    ] = 0.95,
+        float | None,
+        typer.Option(
+            "--confidence", help="Probability above which it counts as found. Default: 0.95; equality 0.8."
+        ),
+    ] = None,
     wanted: Annotated[float, typer.Option("--wanted", help="Share of right conclusions wanted.")] = 0.8,
     replicates: Annotated[int, typer.Option("--replicates", help="Simulated studies of each size.")] = 100,
     seed: SeedOption = 2017,
@@ -76,7 +83,11 @@ def power(
 
     Every simulated study follows the study's schedule and is fitted as a report would fit it.
 
-    Example: elbowroom power --study carmichael2017 --worth 1,1,2 --participants 7,20,45 --out power
+    Examples:
+
+    elbowroom power --study carmichael2017 --worth 1,1,2 --participants 7,20,45 --out power
+
+    elbowroom power --study carmichael2017 --conclusion equal --replicates 20
     """
     from analysis.power import POWER_TABLE, write_power
     from analysis.power import power as run_power

@@ -11,13 +11,12 @@ import altair as alt
 import pandas as pd
 import streamlit as st
 
+from analysis.figures.labels import LIKELY
 from app.console.findings import QuestionAtAGlance, StuckAtAGlance
 
 if TYPE_CHECKING:
     from analysis.figures.style import Drawing
 
-LIKELY = 0.8
-"""From this chance on a first rank is set in bold."""
 _ROW_PX = 28
 _AXIS_PX = 44
 

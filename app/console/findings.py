@@ -1,9 +1,11 @@
 """What the console says of the data: the ranking at a glance and the stuck rates, under the labels shown."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from analysis.claims import Claim, joint_sentence
 from analysis.counts import count_responses
+from analysis.figures.labels import LIKELY
 from analysis.quick import quick_ranking
 from analysis.stuck import share_of_comparisons
 from data.errors import ElbowroomError
@@ -73,6 +75,17 @@ def ranking_at_a_glance(table: ResponseTable, labels: Mapping[str, str]) -> tupl
             QuestionAtAGlance(question.name, question.short, question.wording, counts.n, standings, reason)
         )
     return tuple(found)
+
+
+def firsts_at_a_glance(questions: Sequence[QuestionAtAGlance]) -> str:
+    """What the first places that look likely are worth together, as a sentence; empty if there are none."""
+    claims = [
+        Claim("", first.label, first.p_best, question.name)
+        for question in questions
+        if question.standings
+        if (first := max(question.standings, key=lambda s: s.p_best)).p_best >= LIKELY
+    ]
+    return joint_sentence(claims, "likely first place", "likely first places (80 % and more)")
 
 
 def stuck_at_a_glance(table: StuckTable, labels: Mapping[str, str]) -> tuple[StuckAtAGlance, ...]:

@@ -13,6 +13,7 @@ from typing import Self
 
 from app.console.aside import Aside, Teller
 from app.server.desk import Desk
+from data.records import Look
 from data.responses import LagTable, MetricTable, PaceTable, ResponseTable, StuckTable
 from data.study import Study
 
@@ -64,6 +65,7 @@ class FullFit(Aside):
             is_blinded = not desk.store.is_unblinded(desk.stored_study)
             detail = {"study": desk.stored_study.label, "blinded": "yes" if is_blinded else "no"}
             desk.store.log("researcher", "full fit", detail, desk.clock())
+            desk.store.log_look(desk.stored_study, evidence.table.look, "researcher", desk.clock())
             self._count += 1
             folder = self._place / f"report-{self._count}"
 
@@ -104,6 +106,7 @@ class _Evidence:
     metrics: MetricTable | None
     pace: PaceTable | None
     study: Study
+    looks: tuple[Look, ...]
 
     @classmethod
     def of(cls, desk: Desk, include_simulated: bool) -> Self:
@@ -115,6 +118,7 @@ class _Evidence:
             store.metric_table(stored, include_simulated),
             store.pace_table(stored, include_simulated),
             stored.study,
+            store.looks(stored),
         )
 
 
@@ -134,5 +138,6 @@ def _fit(tell: Teller, evidence: _Evidence, folder: Path) -> None:
         lag=evidence.lag,
         metrics=evidence.metrics,
         pace=evidence.pace,
+        looks=evidence.looks,
     )
     tell.give(tuple(fitted.warnings))

@@ -3,7 +3,7 @@
 import streamlit as st
 
 from app.console.charts import stuck_chart, worth_chart
-from app.console.evidence import Evidence, evidence, includes_simulated, simulated_switch
+from app.console.evidence import Evidence, evidence, includes_simulated, reliability, simulated_switch
 from app.console.findings import ONLY_THESE
 from app.console.labels import shown_labels
 from app.console.people import Seat, seats
@@ -54,7 +54,7 @@ def _figures(desk: Desk) -> None:
     )
     wide, narrow = st.columns([0.69, 0.31], gap="small")
     with card("ranking", wide):
-        _ranking(found)
+        _ranking(desk, found)
     with card("stuck", narrow):
         _stuck(found)
     with card("quality", narrow):
@@ -64,7 +64,7 @@ def _figures(desk: Desk) -> None:
         _sessions(desk, seated)
 
 
-def _ranking(found: Evidence) -> None:
+def _ranking(desk: Desk, found: Evidence) -> None:
     heading("How the modes rank")
     if not found.questions:
         st.caption(found.why_none)
@@ -83,6 +83,7 @@ def _ranking(found: Evidence) -> None:
                 column.altair_chart(worth_chart(question), width="stretch")
             else:
                 column.caption(question.reason)
+    reliability(desk, found)
 
 
 def _stuck(found: Evidence) -> None:

@@ -16,7 +16,7 @@ from app.console.aside_bar import running_bar
 from app.console.power_chart import power_chart
 from app.console.power_run import PowerRun, power_run
 from app.console.style import Mark, card, heading, headline, table
-from app.planning import Wish, answers_each, percent, plan_of
+from app.planning import Wish, answers_each, conclusion_of, percent, plan_of
 from app.server.desk import Desk
 from data.answers import SCALES
 from data.errors import InputError
@@ -25,7 +25,11 @@ from data.study import Study
 _KEPT = "planning-wish"
 MOST_STUDIES = 5000
 """Simulated studies of each size that the console takes on; the command line takes more."""
-_FOUND = {"best": "the best mode", "order": "the whole order of the modes"}
+_FOUND = {
+    "best": "the best mode",
+    "order": "the whole order of the modes",
+    "equal": "that all modes are equal in practice",
+}
 
 
 def show(desk: Desk) -> None:
@@ -78,7 +82,7 @@ def _wish(study: Study, before: Wish) -> Wish:
         ("spread", before.subject_sd),
         ("side", before.side_effect),
         ("conclusion", before.conclusion if before.conclusion in kinds else "best"),
-        ("confidence", 100 * before.confidence),
+        ("confidence", 100 * conclusion_of(study, before.conclusion, before.confidence).confidence),
         ("participants", before.participants),
         ("repetitions", before.repetitions),
         ("replicates", before.replicates),
@@ -125,8 +129,9 @@ def _wish(study: Study, before: Wish) -> Wish:
 
 
 def _conclusions(study: Study) -> Mapping[str, str]:
-    pairs = combinations(study.mode_names, 2)
-    return _FOUND | {f"{a}:{b}": f"the better of {a} and {b}" for a, b in pairs}
+    pairs = tuple(combinations(study.mode_names, 2))
+    better = {f"{a}:{b}": f"the better of {a} and {b}" for a, b in pairs}
+    return _FOUND | better | {f"{a}={b}": f"that {a} and {b} are equal in practice" for a, b in pairs}
 
 
 def _glance(study: Study, plan: Plan) -> None:

@@ -3,7 +3,7 @@
 import streamlit as st
 
 from app.console.charts import percent, worth_chart
-from app.console.evidence import evidence, simulated_switch
+from app.console.evidence import evidence, reliability, simulated_switch
 from app.console.findings import ONLY_THESE
 from app.console.fit_card import fit_card
 from app.console.style import card, heading, headline, table
@@ -24,6 +24,7 @@ def show(desk: Desk) -> None:
     )
     if not found.questions:
         st.markdown(found.why_none)
+    reliability(desk, found)
     for question in found.questions:
         with card(question.name):
             heading(f"{question.name}: {question.wording}")

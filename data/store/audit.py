@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 
 from sqlalchemy import select
 
-from data.records import AuditEntry
+from data.records import AuditEntry, Look
 from data.store.external_runs import StoredExternalRuns
 from data.store.rows import every, first, record_of, row_of
 from data.store.studies import StoredStudy
@@ -16,6 +16,7 @@ from data.store.tables import audit
 
 UNBLIND = "unblind"
 LOCK = "lock study"
+LOOK = "look at results"
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,36 @@ class StoredAudit(StoredExternalRuns):
             if not self._study_by_id(connection, study.id).locked:
                 self._lock(connection, study.id)
                 self.log(actor, LOCK, {"study": study.label, "sha256": study.sha256}, at)
+
+    def log_look(self, study: StoredStudy, look: Look, actor: str, at: datetime | None = None) -> None:
+        """Keep that a ranking was shown, once for each number of answers: the same results again are no
+        further look. Results without any answer of people are none."""
+        if not self._is_new(study, look):
+            return
+        with self.transaction():
+            if self._is_new(study, look):
+                detail = {
+                    "study": study.label,
+                    "sha256": study.sha256,
+                    "participants": str(look.participants),
+                    "answers": str(look.answers),
+                }
+                self.log(actor, LOOK, detail, at)
+
+    def _is_new(self, study: StoredStudy, look: Look) -> bool:
+        return look.answers > 0 and all(look.answers != before.answers for before in self.looks(study))
+
+    def looks(self, study: StoredStudy) -> tuple[Look, ...]:
+        """How often a ranking of this revision of the study was shown, in order."""
+        with self.reading() as connection:
+            details = connection.execute(
+                select(audit.c.detail).where(audit.c.action == LOOK).order_by(audit.c.number)
+            ).scalars()
+            return tuple(
+                Look(int(detail["participants"]), int(detail["answers"]))
+                for detail in details
+                if detail.get("sha256") == study.sha256
+            )
 
     def is_unblinded(self, study: StoredStudy) -> bool:
         """Whether anyone has revealed the modes of this revision of the study."""

@@ -5,7 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, Convergence, convergence, shown_ess, shown_rhat
+from analysis.diagnostics import (
+    ESS_ABOVE,
+    RHAT_BELOW,
+    Convergence,
+    convergence,
+    ess_in_words,
+    rhat_in_words,
+    shown_ess,
+    shown_rhat,
+)
 from analysis.engines import fast
 from analysis.fit import fit
 from analysis.gate import MOST_PAIRS, Gate, reported_convergence, watched_pairs
@@ -115,10 +124,14 @@ def test_a_refusal_names_the_worst_quantity_and_counts_those_that_fail():
 
 @pytest.mark.parametrize("rhat", [1.0096, 1.01, 1.01001, 1.0104, 1.2])
 @pytest.mark.parametrize("ess", [399.7, 400.0, 400.3, 4000.0])
-def test_what_is_printed_lies_on_the_side_of_the_limit_that_the_value_lies_on(rhat, ess):
+def test_printed_values_are_rounded_as_usual_and_words_say_on_which_side_of_the_limit_they_are(rhat, ess):
     state = Gate(np.array([rhat]), np.array([ess]), np.array([5000.0]), ("the worth of M1",))
-    assert (float(shown_rhat(rhat)) < RHAT_BELOW) == (rhat < RHAT_BELOW)
-    assert (float(shown_ess(ess).replace(",", "")) > ESS_ABOVE) == (ess > ESS_ABOVE)
+    assert float(shown_rhat(rhat)) == round(rhat, 3)
+    assert float(shown_ess(ess).replace(",", "")) == round(ess)
+    passes = float(shown_rhat(rhat)) < RHAT_BELOW or "just below" in rhat_in_words(rhat)
+    assert passes == (rhat < RHAT_BELOW)
+    passes = round(ess) > ESS_ABOVE or "just above" in ess_in_words(ess)
+    assert passes == (ess > ESS_ABOVE)
     assert state.passed == (rhat < RHAT_BELOW and ess > ESS_ABOVE)
     assert state.passed == (state.refusal == "")
 
