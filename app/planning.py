@@ -10,6 +10,7 @@ from analysis.power.scenario import (
     SIDE_EFFECT,
     SUBJECT_SD,
     Conclusion,
+    Kind,
     Scenario,
     cuts_for_ties,
 )
@@ -19,8 +20,9 @@ from data.study import Study
 _MULTIPLES = (1, 2, 3, 4, 6)
 """Sizes that are tried where none are given, in planned numbers."""
 _OF_ALL_MODES: dict[str, Kind] = {"best": "best", "order": "order", "equal": "equal"}
+"""Conclusions that name no modes, as they are written."""
 _ABOUT_ENOUGH = (0.5, 0.75, 1.0, 1.5)
-"""The same for equality, of which the planned numbers mostly show nothing, in the number that should do."""
+"""Sizes for equality, of which the planned numbers mostly show nothing: multiples of what should do."""
 
 
 @dataclass(frozen=True)

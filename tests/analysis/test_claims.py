@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.claims import Claim, all_right, expected_wrong
+from analysis.claims import Claim, all_right, expected_wrong, joint_sentence
 
 
 def test_claims_about_different_questions_are_right_together_with_the_product_of_their_chances() -> None:
@@ -18,3 +18,25 @@ def test_of_claims_about_one_question_only_a_lower_limit_is_known() -> None:
 
 def test_no_claim_is_never_wrong() -> None:
     assert (expected_wrong([]), all_right([])) == (0.0, 1.0)
+
+
+def test_the_sentence_gives_both_numbers_and_says_where_one_is_a_limit() -> None:
+    apart = [Claim("", "a", 0.9, "Q1"), Claim("", "b", 0.8, "Q2")]
+    assert joint_sentence(apart, "first", "firsts") == (
+        "Of the 2 firsts 0.30 are expected to be wrong; the chance that all of them are right is 72 %."
+    )
+    together = [Claim("", "a", 0.99, "Q1"), Claim("", "b", 0.98, "Q1")]
+    assert joint_sentence(together, "first", "firsts").endswith("all of them are right is at least 97 %.")
+    assert joint_sentence(apart[:1], "first", "firsts") == "The chance that this first is wrong is 10 %."
+    assert joint_sentence([], "first", "firsts") == ""
+
+
+def test_a_limit_that_says_nothing_is_not_said() -> None:
+    many = [Claim("", str(k), 0.8, "Q1") for k in range(5)]
+    assert joint_sentence(many, "pair", "pairs") == "Of the 5 pairs 1.0 are expected to be wrong."
+
+
+def test_sure_claims_are_not_called_certain() -> None:
+    sure = [Claim("", "a", 1.0, "Q1"), Claim("", "b", 1.0, "Q2")]
+    assert "fewer than 0.01 are expected" in joint_sentence(sure, "first", "firsts")
+    assert "over 99 %" in joint_sentence(sure, "first", "firsts")

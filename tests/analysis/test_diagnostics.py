@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from analysis.diagnostics import convergence, hdi
+from analysis.diagnostics import convergence, ess_of_mean, hdi
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -33,7 +33,9 @@ def test_rhat_and_ess_are_arvizs(rho, n_draws):
         np.testing.assert_allclose(found.ess_bulk[q], az.ess(values, method="bulk"), rtol=1e-10)
         # Between two equal draws ArviZ's quantile can fall an ulp below both; ours is the draw itself.
         if q != 1:
-            np.testing.assert_allclose(found.ess_tail[q], az.ess(values, method="tail"), rtol=1e-10)
+            tail = az.ess(values, method="tail", prob=(0.05, 0.95))
+            np.testing.assert_allclose(found.ess_tail[q], tail, rtol=1e-10)
+        np.testing.assert_allclose(ess_of_mean(draws)[q], az.ess(values, method="mean"), rtol=1e-10)
 
 
 @pytest.mark.parametrize("probability", [0.5, 0.94])

@@ -45,6 +45,14 @@ def test_a_chain_of_comparisons_is_ranked(table_of):
     ]
     assert question.ranked
     assert question.missing_pairs == ()
+    assert any(
+        w.startswith("Never shown against each other: a and c; a and d; b and d. ") for w in question.warnings
+    )
+
+
+def test_where_every_pair_was_shown_none_is_named(table_of):
+    question = fit(of_pairs(table_of, [("a", "b"), ("c", "b"), ("a", "c")], ["a", "b", "c"])).questions[0]
+    assert not any("Never shown" in warning for warning in question.warnings)
 
 
 def test_one_unranked_question_leaves_the_other_ranked(table_of):

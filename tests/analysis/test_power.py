@@ -13,6 +13,7 @@ from analysis.power import (
     Scenario,
     cuts_for_ties,
     draw_answers,
+    glance,
     power,
     tie_share,
     write_power,
@@ -108,6 +109,35 @@ THIRD_FIRST = [[-1.0, 0.0, 1.0]] * 99 + [[1.0, 0.0, -1.0]]
 )
 def test_a_conclusion_is_right_wrong_or_left_open(conclusion, worth, verdict) -> None:
     assert conclusion.of(fit_with(THIRD_FIRST, (0.01, 0.0, 0.99)), Scenario(worth)) == verdict
+
+
+CLOSE = [[-0.05, 0.0, 0.05]] * 90 + [[-0.3, 0.0, 0.3]] * 10
+
+
+@pytest.mark.parametrize(
+    ("conclusion", "worth", "verdict"),
+    [
+        (Conclusion("equal", 0.8), (1, 1, 1), "right"),
+        (Conclusion("equal", 0.8), (1, 1.1, 1.15), "right"),
+        (Conclusion("equal", 0.8), (1, 1, 1.3), "wrong"),
+        (Conclusion("equal", 0.95), (1, 1, 1), "open"),
+        (Conclusion("equal pair", 0.8, (0, 1)), (1, 1, 2), "right"),
+        (Conclusion("equal pair", 0.8, (0, 2)), (1, 1, 2), "wrong"),
+    ],
+)
+def test_equality_is_concluded_from_every_pair_that_it_is_about(conclusion, worth, verdict) -> None:
+    assert conclusion.of(fit_with(CLOSE, (0.3, 0.3, 0.4)), Scenario(worth)) == verdict
+
+
+def test_equality_at_a_glance_needs_more_than_a_hundred_people_where_a_best_mode_needs_forty() -> None:
+    equal = Plan(STUDY, Scenario((1, 1, 1)), (7,), (2,), Conclusion("equal pair", 0.8, (0, 1)))
+    shares = [glance(equal).share(n) for n in (20, 60, 120, 240)]
+    assert shares[:2] == [0.0, 0.0]
+    assert 0.3 < shares[2] < 0.6
+    assert shares[3] > 0.7
+    assert 200 < glance(equal).enough < 320
+    apart = replace(equal, scenario=Scenario((1, 2, 1)))
+    assert glance(apart).share(240) == 0.0
 
 
 def test_a_study_that_cannot_be_ranked_concludes_nothing() -> None:
