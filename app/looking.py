@@ -2,8 +2,8 @@
 
 from datetime import datetime
 
+from analysis.looks import earlier, looks_sentence
 from analysis.observed_design import MOST_PAIRS, ObservedDesign
-from analysis.report.size import earlier, looks_sentence
 from app.planning import Wish, plan_of
 from data.records import Look
 from data.store import Store

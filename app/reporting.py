@@ -11,6 +11,7 @@ from analysis.console_ranking import print_ranking
 from analysis.fit import fit
 from analysis.groups import largest_groups
 from analysis.lag import LagExclusion, LagLimits, lag_changes, without_laggy
+from analysis.looks import earlier
 from analysis.refits import Refits, refits
 from analysis.report import MARKER, ReportResult, write_report
 from analysis.results import Engine, Fit, FitSettings, Link
@@ -103,7 +104,7 @@ def make_report(request: Request) -> ReportResult:
             metrics=evidence.metrics,
             refitted=refitted,
             pace=evidence.pace,
-            looks=evidence.looks,
+            looks=earlier(everything.looks, everything.table.look),
         )
     if request.responses is None:
         _keep_look(request, everything.table)

@@ -128,7 +128,7 @@ def write_report(
     pace : PaceTable or None
         How long the answers took, where it is known.
     looks : sequence of Look
-        When results were shown before, where a store kept that.
+        When results were shown before, at other answers than these, where a store kept that.
 
     Raises
     ------

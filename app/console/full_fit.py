@@ -11,6 +11,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Self
 
+from analysis.looks import earlier
 from app.console.aside import Aside, Teller
 from app.server.desk import Desk
 from data.records import Look
@@ -111,14 +112,15 @@ class _Evidence:
     @classmethod
     def of(cls, desk: Desk, include_simulated: bool) -> Self:
         store, stored = desk.store, desk.stored_study
+        answers = store.responses_table(stored, include_simulated)
         return cls(
-            store.responses_table(stored, include_simulated),
+            answers,
             store.stuck_table(stored, include_simulated),
             store.lag_table(stored, include_simulated),
             store.metric_table(stored, include_simulated),
             store.pace_table(stored, include_simulated),
             stored.study,
-            store.looks(stored),
+            earlier(store.looks(stored), answers.look),
         )
 
 

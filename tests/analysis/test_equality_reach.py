@@ -17,7 +17,8 @@ DESIGN = ObservedDesign(((0, 1), (0, 2), (1, 2)), 2, Scenario((1, 1, 1), 3, (0.5
     ("people", "low", "high"), [(20, 0.0, 0.0), (60, 0.0, 0.05), (120, 0.3, 0.6), (240, 0.7, 1.0)]
 )
 def test_equality_is_found_as_often_as_fits_of_whole_studies_find_it(people, low, high) -> None:
-    """An audit's fits found it in 0 of 24 studies of 20 people, 0 of 15 of 60, 6 of 12 of 120, 9 of 9 of 240."""
+    """An audit's fits found it in 0 of 24 studies of 20 people, 0 of 15 of 60, 6 of 12 of 120, 9 of 9 of
+    240."""
     assert low <= equality_reach(replace(DESIGN, people=float(people))).share <= high
 
 

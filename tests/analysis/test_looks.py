@@ -18,7 +18,7 @@ def design(repetitions: int, subject_sd: float = 0.7, *, is_pooled: bool = False
 
 
 def mean_errors(asked: ObservedDesign, people: range, chance: float = 0.95) -> tuple[float, float]:
-    found = [look_errors(asked, people, chance, seed) for seed in range(5)]
+    found = [look_errors(asked, tuple(map(float, people)), chance, seed) for seed in range(5)]
     return float(np.mean([e.once for e in found])), float(np.mean([e.stopping for e in found]))
 
 
@@ -47,7 +47,7 @@ def test_the_model_of_a_report_errs_less_than_a_pooled_estimate_where_people_dif
 
 
 def test_a_single_look_is_wrong_once() -> None:
-    errors = look_errors(design(2), [20.0])
+    errors = look_errors(design(2), (20.0,))
     assert errors.once == errors.stopping
     assert 0.005 < errors.once < 0.04
 
@@ -65,7 +65,9 @@ def test_the_first_place_of_many_modes_is_judged_against_all_of_them() -> None:
     ability = 2.0 * rng.standard_normal((200, 5))
     noise = rng.multivariate_normal(np.zeros(5), covariance, size=20_000, method="svd")
     leader = ability.argmax(axis=1)
-    chance = np.array([((a + noise).argmax(axis=1) == k).mean() for a, k in zip(ability, leader, strict=True)])
+    chance = np.array(
+        [((a + noise).argmax(axis=1) == k).mean() for a, k in zip(ability, leader, strict=True)]
+    )
     clear = np.abs(chance - 0.8) > 0.03
     assert 0.2 < (chance > 0.8).mean() < 0.8
     assert np.array_equal(_is_named(ability, covariance, 0.8)[clear], (chance > 0.8)[clear])

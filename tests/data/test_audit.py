@@ -6,6 +6,7 @@ from datetime import timedelta
 
 import pytest
 
+from data.records import Look
 from data.store import Store
 from data.store.audit import chain_hash
 
@@ -68,3 +69,25 @@ def test_a_forged_entry_with_a_hash_of_its_own_breaks_the_chain_behind_it(logged
 def test_the_order_of_details_makes_no_difference(store, noon):
     assert dict(store.log("a", "b", {"y": "1", "x": "2"}, noon).detail) == {"x": "2", "y": "1"}
     assert store.verify_audit().is_intact
+
+
+def test_a_look_at_results_is_kept_once_for_each_number_of_answers(store, fill, noon):
+    stored = fill(store, people=1)
+    for look in (Look(1, 6), Look(1, 6), Look(2, 12), Look(2, 12), Look(1, 6)):
+        store.log_look(stored, look, "researcher", noon)
+    assert store.looks(stored) == (Look(1, 6), Look(2, 12))
+    assert store.verify_audit().is_intact
+    entry = store.audit_log()[-1]
+    assert (entry.actor, entry.action) == ("researcher", "look at results")
+    assert not {"M1", "M2", "M3"} & set(entry.detail.values())
+
+
+def test_results_without_answers_of_people_are_no_look(store, fill):
+    stored = fill(store, people=1, source="simulated")
+    table = store.responses_table(stored, include_simulated=True)
+    store.log_look(stored, table.look, "researcher")
+    assert store.looks(stored) == ()
+    stored = fill(store, people=2)
+    store.log_look(stored, store.responses_table(stored, include_simulated=True).look, "researcher")
+    per_person = 6 * 6
+    assert store.looks(stored) == (Look(2, 2 * per_person),)
