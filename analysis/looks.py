@@ -107,7 +107,7 @@ def looks_sentence(before: Sequence[Look], shown: Look, design: ObservedDesign |
     else:
         people = f"{', '.join(numbers[:-1])} and {numbers[-1]}" if len(numbers) > 1 else "".join(numbers)
     with_people = f" (with {people} participant{'' if people == '1' else 's'})" if people else ""
-    times = "once" if len(before) == 1 else f"{len(before):,} times"
+    times = {1: "once", 2: "twice"}.get(len(before), f"{len(before):,} times")
     said = f"The results were looked at {times} {when}{with_people}."
     if design is None or not shown.answers:
         return said

@@ -55,7 +55,7 @@ def _pair_claim(e: Equivalence) -> Claim:
 
 def difference_sentence(found: Sequence[Equivalence]) -> str:
     """What the readings of the pairs are worth together; empty if all are open."""
-    return joint_sentence(difference_claims(found), "reading of a pair", "readings of pairs")
+    return joint_sentence(difference_claims(found), "likely reading", "likely readings of pairs")
 
 
 def side_claims(fit: Fit) -> tuple[Claim, ...]:

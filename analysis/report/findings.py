@@ -141,16 +141,16 @@ def lead(
         phrases.append(Phrase(f"{what} answers were simulated, so they {say}. "))
     elif found and max(f.question.n_participants for f in found) == 1:
         phrases.append(Phrase("All answers are one participant's: they tell little about other people. "))
+    joint = [Phrase(f"{first_sentence(found)} ")] if likely else []
     if len(found) == 1:
-        phrases += _one_question(found[0])
+        phrases += [*_one_question(found[0]), *joint]
     elif likely or still_open:
         phrases += [
             Phrase(_opening(found, likely, bool(unanswered)) + " "),
             *_likely_ones(likely),
+            *joint,
             *_open_ones(still_open, likely),
         ]
-    if likely:
-        phrases.append(Phrase(f"{first_sentence(found)} "))
     if still_open and equality is not None and equality.is_too_small:
         phrases.append(Phrase(f"{equality.about_open} "))
     if len(found) > 1:

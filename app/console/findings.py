@@ -85,7 +85,8 @@ def firsts_at_a_glance(questions: Sequence[QuestionAtAGlance]) -> str:
         if question.standings
         if (first := max(question.standings, key=lambda s: s.p_best)).p_best >= LIKELY
     ]
-    return joint_sentence(claims, "likely first place", "likely first places (80 % and more)")
+    said = joint_sentence(claims, "likely first place", f"first places of {100 * LIKELY:.0f} % and more")
+    return said and f"{said} That is too sure: this estimate leaves out that people differ."
 
 
 def stuck_at_a_glance(table: StuckTable, labels: Mapping[str, str]) -> tuple[StuckAtAGlance, ...]:

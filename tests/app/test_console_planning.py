@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from playwright.sync_api import Page, expect
 
-from analysis.power import Conclusion
+from analysis.power import Conclusion, glance
 from app.cli.main import run
 from app.console.power_run import PowerRun
 from app.planning import Wish, expectation, plan_of
@@ -40,6 +40,16 @@ def test_a_plan_is_the_study_s_own_where_nothing_is_written() -> None:
     assert plan.conclusion == Conclusion("best", 0.95)
 
 
+def test_equality_is_planned_for_with_modes_alike_and_sizes_that_can_show_it() -> None:
+    plan = plan_of(STUDY, Wish(conclusion="equal"))
+    assert plan.conclusion == Conclusion("equal", 0.8)
+    assert plan.scenario.worth == (1.0, 1.0, 1.0)
+    assert min(plan.participants) > 100
+    assert plan.participants[2] == glance(plan).enough
+    pair = plan_of(STUDY, Wish(conclusion="M1=M3", participants="60,120", confidence=0.9))
+    assert (pair.conclusion, pair.participants) == (Conclusion("equal pair", 0.9, (0, 2)), (60, 120))
+
+
 def test_two_modes_by_name_are_a_conclusion() -> None:
     assert plan_of(STUDY, Wish(conclusion="M3:M1")).conclusion == Conclusion("pair", 0.95, (2, 0))
 
@@ -57,7 +67,11 @@ def test_a_share_of_ties_becomes_cut_points() -> None:
         (Wish(participants="7.5"), "participants: '7.5' is no list of whole numbers"),
         (Wish(participants="-7"), "participants: one or more whole numbers"),
         (Wish(conclusion="M1:M9"), "conclusion: mode: 'M9' is not one of: M1, M2, M3"),
-        (Wish(conclusion="first"), "conclusion: 'first' is not one of: best, order, two modes such as M1:M2"),
+        (
+            Wish(conclusion="first"),
+            "'first' is not one of: best, order, equal, two modes such as M1:M2 or M1=M2",
+        ),
+        (Wish(conclusion="M1=M9"), "conclusion: mode: 'M9' is not one of: M1, M2, M3"),
         (Wish(ties=0.2, cuts="0.5"), "ties, cuts: give one of them"),
         (Wish(ties=1.5), "ties: 1.5 is no share"),
     ],

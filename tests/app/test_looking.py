@@ -100,8 +100,9 @@ def test_likely_firsts_of_the_console_carry_their_joint_statement() -> None:
 
     questions = [question("Q1", 0.9, 0.1), question("Q2", 0.2, 0.8), question("Q3", 0.5, 0.5), question("Q4")]
     said = firsts_at_a_glance(questions)
-    assert said.startswith("Of the 2 likely first places")
+    assert said.startswith("Of the 2 first places of 80 % and more")
     assert "0.30 are expected to be wrong; the chance that all of them are right is 72 %" in said
+    assert "too sure" in said
     assert firsts_at_a_glance(questions[2:]) == ""
 
 
