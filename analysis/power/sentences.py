@@ -1,5 +1,6 @@
 """What a power analysis says, in plain sentences: how many participants are enough, and how sure that is."""
 
+from analysis.power.glance import glance
 from analysis.power.outcome import Power
 
 
@@ -36,9 +37,11 @@ def _answer(result: Power, repetitions: int) -> str:
         return f"{reached} of studies with {last.participants} participants come to the right conclusion."
     enough = curve.enough(result.plan.wanted)
     if enough is None:
+        quick = glance(result.plan, repetitions).enough
+        about = f"more participants (a quick estimate says about {quick})" if quick else "more participants"
         return (
             f"The share of right conclusions does not rise clearly enough to tell how many are needed for "
-            f"{wanted}: try more participants, or simulate more studies."
+            f"{wanted}: try {about}, or simulate more studies."
         )
     found = f"{enough.participants} {enough.interval}"
     if enough.participants > last.participants:
