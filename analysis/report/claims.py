@@ -26,13 +26,24 @@ FINDINGS_TABLE = "findings.csv"
 
 
 def report_claims(
-    fit: Fit, found: Sequence[Finding], look: CloserLook, refitted: Refits | None
+    fit: Fit,
+    found: Sequence[Finding],
+    look: CloserLook,
+    refitted: Refits | None,
+    more: Sequence[Claim] = (),
 ) -> tuple[Claim, ...]:
-    """Every claim of a report, in the order of its sections."""
+    """Every claim of a report, in the order of its sections.
+
+    Parameters
+    ----------
+    more : sequence of Claim
+        Those of sections that need more than the fit: on stuck rates, and on metrics of the laps.
+    """
     return (
         *first_claims(found),
         *side_claims(fit),
         *difference_claims(look.equivalences),
+        *more,
         *(group_claims(refitted.moderation) if refitted is not None else ()),
     )
 

@@ -238,9 +238,9 @@ def _mean(text: str, error: float | None, digits: int) -> str:
 
 
 def _chance(probability: float, error: float | None) -> str:
-    """A chance in per cent with its Monte Carlo error where that is known."""
-    known = "" if error is None else f" ± {100 * error:.1f}"
-    return f"{percent(probability)}{known} %"
+    """A chance in per cent with its Monte Carlo error, where that is known and the chance is not a limit."""
+    shown = percent(probability)
+    return f"{shown} %" if error is None or shown[0] in "<>" else f"{shown} ± {100 * error:.1f} %"
 
 
 def worth_table(fit: Fit, errors: Sequence[MonteCarloError]) -> Table:
