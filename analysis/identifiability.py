@@ -15,6 +15,8 @@ FEW_COMPARISONS = 10
 """Fewer comparisons of a mode than this bring a warning. Untuned: a day's pilot, not a study."""
 ONE_SIDE_BY_CHANCE = 0.001
 """All answers for one side count as chance if coins would do that at least so often: up to ten answers."""
+_PAIRS_NAMED = 6
+"""Pairs never shown that a sentence names before it counts the rest."""
 
 Pair = tuple[str, str]
 
@@ -173,10 +175,10 @@ def _never_shown(modes: tuple[str, ...], compared: NDArray[np.int64]) -> list[st
     pairs = [f"{isolated(modes[i])} and {isolated(modes[j])}" for i, j in never]
     if not pairs:
         return []
-    where = "; pairwise.csv has them all, with n = 0" if len(pairs) > _LISTED else ""
+    where = "; pairwise.csv has them all, with n = 0" if len(pairs) > _PAIRS_NAMED else ""
     return [
-        f"Never shown against each other: {'; '.join(pairs[:_LISTED])}"
-        + (f"; and {len(pairs) - _LISTED:,} more pairs" if len(pairs) > _LISTED else "")
+        f"Never shown against each other: {'; '.join(pairs[:_PAIRS_NAMED])}"
+        + (f"; and {len(pairs) - _PAIRS_NAMED:,} more pairs" if len(pairs) > _PAIRS_NAMED else "")
         + f". Which of two such modes is above the other follows from the other pairs alone{where}."
     ]
 

@@ -55,7 +55,7 @@ def monte_carlo_errors(fit: Fit) -> tuple[MonteCarloError, ...]:
         MonteCarloError(q.question.name, *of, float(value), float(error))
         for q in fit.questions
         if q.ranked and q.draws is not None
-        for names, values, errors in _parts(q, q.draws, fit.modes)
+        for names, values, errors in _parts(q, q.draws, q.mode_names)
         for of, value, error in zip(names, values, errors, strict=True)
     )
 

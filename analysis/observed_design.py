@@ -40,7 +40,7 @@ def observed_design(fit: Fit) -> ObservedDesign | None:
     if not ranked:
         return None
     question = max(ranked, key=lambda q: q.n)
-    place = {mode: k for k, mode in enumerate(fit.modes)}
+    place = {mode: k for k, mode in enumerate(question.mode_names)}
     pairs = tuple((place[p.mode_i], place[p.mode_j]) for p in question.pairs if p.n)
     if not 0 < len(pairs) <= MOST_PAIRS:
         return None
@@ -50,7 +50,7 @@ def observed_design(fit: Fit) -> ObservedDesign | None:
     return ObservedDesign(
         pairs,
         repetitions,
-        _scenario(question, len(fit.modes)),
+        _scenario(question, len(question.mode_names)),
         question.n / (len(pairs) * repetitions),
         question.n_participants > 0 and not question.hierarchical,
     )

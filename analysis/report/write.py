@@ -13,6 +13,7 @@ from analysis.report.cautions import about_convergence, cautions
 from analysis.report.claims import report_claims, write_findings
 from analysis.report.findings import findings
 from analysis.report.size import size_cautions
+from analysis.report.stuck import stuck_claims
 from analysis.report.summary import Json, summarise, versions, write_summary
 from analysis.report.tables import (
     write_closer_look,
@@ -145,7 +146,7 @@ def write_report(
     contrasts = stuck_contrasts(stuck, rates) if stuck is not None and rates else ()
     lines = straight_lining(table, fit, pace, lambda: tell(0, STEPS, "without people who answer in a line"))
     found = findings(fit)
-    claims = report_claims(fit, found, look, refitted)
+    claims = report_claims(fit, found, look, refitted, stuck_claims(contrasts, rates))
     about_size = size_cautions(fit, found, looks, table.look)
     said = cautions(table, fit, found, study, checks, quality, look.checks, lines, about_size)
     notes = tuple(caution for caution in said if caution not in about_convergence(fit))

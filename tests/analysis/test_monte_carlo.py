@@ -3,10 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from analysis.fit import fit
 from analysis.monte_carlo import chance_errors, mean_errors, monte_carlo_errors
+from analysis.observed_design import observed_design
 from analysis.results import FitSettings
 
 
@@ -50,3 +52,19 @@ def test_a_question_that_is_not_ranked_has_no_errors(simulated):
     fitted = fit(simulated(3))
     unranked = replace(fitted, questions=(replace(fitted.questions[0], ranked=False),))
     assert monte_carlo_errors(unranked) == ()
+
+
+def test_questions_about_modes_of_their_own_have_the_errors_of_these(answers_of, truth, table_of):
+    rows = answers_of(truth, levels=3, participants=6)
+    other = rows.assign(question="Q2").replace({"M1": "M7"})
+    table = table_of(pd.concat([rows, other]), modes=("M1", "M2", "M3", "M7"))
+    first, second = table.questions
+    own = (replace(first, modes=("M1", "M2", "M3")), replace(second, modes=("M2", "M3", "M7")))
+    fitted = fit(replace(table, questions=own))
+    errors = monte_carlo_errors(fitted)
+    best = {(e.question, e.mode_i): e for e in errors if e.quantity == "p_best"}
+    assert {mode for question, mode in best if question == "Q2"} == {"M2", "M3", "M7"}
+    chances = {(q.question.name, m.mode): m.p_best for q in fitted.questions for m in q.modes}
+    assert {key: e.value for key, e in best.items()} == chances
+    design = observed_design(fitted)
+    assert len(design.scenario.worth) == 3
