@@ -28,7 +28,11 @@ def test_every_claim_stands_in_findings_csv_with_what_its_section_is_worth(study
     )
     rows = rows_of(study_report / "findings.csv")
     assert list(rows[0]) == ["section", "claim", "probability", "joint"]
-    assert [(r["section"], r["claim"]) for r in rows] == [(c.section, c.text) for c in claims]
+    of_stuck = [r for r in rows if r["section"] == "How often the robot got stuck"]
+    assert of_stuck
+    assert [(r["section"], r["claim"]) for r in rows if r not in of_stuck] == [
+        (c.section, c.text) for c in claims
+    ]
     firsts = first_claims(findings(study_case.fit))
     assert len(firsts) >= 2
     own = [r for r in rows if r["section"] == "What the answers settle"]
@@ -51,7 +55,7 @@ def test_open_is_not_equal_where_so_few_cannot_show_it(study_case):
     look = closer_look(study_case.table, study_case.fit)
     assert look.equality.is_too_small
     unsettled = tuple(replace(f, reading="open") for f in findings(study_case.fit))
-    said = "".join(p.text for p in lead(unsettled, (), "", (), look.equality))
+    said = "".join(p.text for p in lead(unsettled, (), "", equality=look.equality))
     assert "“Open” does not mean equal: so few answers cannot show that modes are equal; it" in said
 
 
