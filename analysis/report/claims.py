@@ -70,11 +70,16 @@ def difference_sentence(found: Sequence[Equivalence]) -> str:
 
 
 def side_claims(fit: Fit) -> tuple[Claim, ...]:
-    """The questions on which one side is said to be favoured: those whose interval leaves out 0."""
+    """The questions on which one side is said to be favoured.
+
+    There the interval of the side effect leaves out 0, and pairs were shown with their sides exchanged.
+    """
     claims = []
     for question in fit.questions:
         effect = next((p for p in question.parameters if p.name == "side_effect"), None)
-        if effect is None or question.draws is None or effect.hdi_low <= 0 <= effect.hdi_high:
+        if effect is None or question.draws is None or not question.is_side_told_apart:
+            continue
+        if effect.hdi_low <= 0 <= effect.hdi_high:
             continue
         draws, name = question.draws.parameters["side_effect"], question.question.name
         side, chance = ("A", np.mean(draws > 0)) if effect.mean > 0 else ("B", np.mean(draws < 0))

@@ -102,7 +102,7 @@ def test_the_same_fit_gives_the_same_bytes_in_every_file_that_people_read(study_
     study = read_study("carmichael2017")
     write_report(study_case.table, study_case.fit, tmp_path / "again", study_case.stuck, study)
     compared = [p for p in study_report.rglob("*") if p.is_file() and p.suffix != ".nc"]
-    assert len(compared) == 35
+    assert len(compared) == 37
     for path in compared:
         assert path.read_bytes() == (tmp_path / "again" / path.relative_to(study_report)).read_bytes(), (
             path.name
