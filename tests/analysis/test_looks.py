@@ -35,7 +35,10 @@ def test_higher_limits_are_wrong_as_rarely_as_the_prototype_found() -> None:
 
 
 def test_looking_after_each_person_by_the_pooled_estimate_raises_3_7_to_about_21_per_cent() -> None:
-    """An audit measured 3.7 and 20.7 % by person 40, where people differ little: sd a third of a logit."""
+    """An audit measured 3.7 and 20.7 % by person 40, and did not say of which people or estimate.
+
+    The person sd of 1/3 is chosen so that a single look errs as often; only the second figure is a check.
+    """
     once, stopping = mean_errors(design(2, 1 / 3, is_pooled=True), range(1, 41))
     assert once == pytest.approx(0.037, abs=0.006)
     assert stopping == pytest.approx(0.207, abs=0.03)
