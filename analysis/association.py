@@ -1,63 +1,44 @@
-"""Preference meets physics: do preferred modes, or preferred laps, differ in what was measured of them?
+"""Preference meets physics: do answers go with what was measured of the two laps they compare?
 
-Two views. Across modes: each mode's worth beside its mean metric; with few modes this is a picture and no
-evidence. Across comparisons: does the mode that is chosen in a comparison have more, or less, of the metric
-in this very comparison? Both are associations: what was measured lies between the mode and the answer, and
-nobody set it.
+Within a person, the answer (towards A) is set beside the metric of A less that of B, both as ranks about 0
+and less the person's own mean: whoever favours a side, or always gives the same answer, adds nothing. People
+are the units: a claim takes people who agree, not many answers of a few. All questions and metrics are tested
+together, so that a report whose answers have nothing to do with any metric names one in at most 5 % of
+studies.
+
+Nothing is correlated over the modes: three points that have nothing to do with each other correlate above .98
+in one case of eight. `covariates` has a model for four modes and more.
+
+References
+----------
+Romano & Wolf 2005 (the whole list, see `sign_flips`); Miller 1974, "The jackknife - a review", Biometrika 61
+(the interval: Fisher's z of the correlation, people left out one by one).
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import nan
+from math import isnan, nan, sqrt
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
-from analysis.answer_shares import thinned
-from analysis.diagnostics import hdi
+from analysis.claims import Claim
 from analysis.engines.fast import question_seed
-from analysis.figures.labels import LIKELY
-from analysis.results import HDI_PROBABILITY, Fit, QuestionFit
+from analysis.measures import FEWEST_PEOPLE, MEASURES, measures_in
+from analysis.results import HDI_PROBABILITY, Fit
+from analysis.sign_flips import flipped_tests
 from data.answers import SCALES
 from data.responses import MetricTable, ResponseTable
 
 FloatArray = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Measure:
-    """A metric that the report sets beside the worths: its name in the data, and its name in words."""
-
-    name: str
-    words: str
-    unit: str
-
-
-MEASURES: tuple[Measure, ...] = (
-    Measure("force_mean_edge_n", "force at the edge", "N"),
-    Measure("gain_exit", "responsiveness leaving the edge", ""),
-    Measure("jerk_rms_m_s3", "jerk", "m/s³"),
-    Measure("longest_lock_s", "longest time locked", "s"),
-    Measure("duration_s", "time a lap", "s"),
-)
-"""What the study of 2017 asked for: force, smoothness and being stuck, and responsiveness and time beside
-them."""
-FEWEST_MODES = 4
-"""A line through fewer worths than these says nothing: no model of worth on a metric is fitted."""
-_RESAMPLES = 400
-
-
-@dataclass(frozen=True)
-class ModeMeasure:
-    """One metric of one mode: mean over participants of their own means, with its 94 % interval."""
-
-    metric: str
-    mode: str
-    mean: float
-    low: float
-    high: float
-    participants: int
+IntArray = NDArray[np.intp]
+SECTION = "Preference meets physics"
+LIST_ERROR = 0.05
+"""Probability that a report names any pair of a question and a metric that do not go together."""
+FEWEST_TO_PASS = 6
+"""So few people cannot pass by chance with less than `LIST_ERROR`: five agree in one of 16 cases."""
 
 
 @dataclass(frozen=True)
@@ -66,157 +47,148 @@ class Association:
 
     Attributes
     ----------
-    modes : int
-        Modes with worth and metric.
-    across_modes, across_modes_low, across_modes_high : float
-        Correlation of worth and metric over the modes, 94 % HDI over posterior and participants; NaN if the
-        question is not ranked.
-    comparisons : int
-        Answers whose comparison has the metric of both modes.
-    across_comparisons, across_comparisons_low, across_comparisons_high : float
-        Rank correlation of the answer (towards A) with the metric of A less that of B, about 0; 94 % interval
-        by the Bayesian bootstrap over participants.
-    p_positive : float
-        Share of that bootstrap in which the correlation is above 0.
+    comparisons, participants : int
+        Answers whose comparison has the metric of both modes, by people with at least two of them; and these
+        people.
+    correlation, correlation_low, correlation_high : float
+        Rank correlation within people of the answer (towards A) with the metric of A less that of B; 94 %
+        interval over people. NaN where answers or metric do not vary within anybody, the interval too with
+        fewer than three people.
+    mode_share : float
+        Of the squared differences between the laps, the share that goes back to the modes: what differences
+        between the modes, the same for everybody, explain.
+    p_alone : float
+        Two-sided p-value by flipping the signs of people, of this metric and question alone.
+    p_in_list : float
+        The same among all questions and metrics of the report; what passes has at most `LIST_ERROR`.
     """
 
     question: str
     metric: str
-    modes: int
-    across_modes: float
-    across_modes_low: float
-    across_modes_high: float
     comparisons: int
-    across_comparisons: float
-    across_comparisons_low: float
-    across_comparisons_high: float
-    p_positive: float
+    participants: int
+    correlation: float
+    correlation_low: float
+    correlation_high: float
+    mode_share: float
+    p_alone: float
+    p_in_list: float
 
     @property
-    def direction(self) -> int:
-        """1 or -1 where preferred laps likely had more, or less, of the metric; else 0."""
-        if self.p_positive >= (1 + LIKELY) / 2:
-            return 1
-        return -1 if self.p_positive <= (1 - LIKELY) / 2 else 0
+    def passes(self) -> bool:
+        """Whether it may be named in a list of which all is right with a probability of 95 %."""
+        return self.p_in_list <= LIST_ERROR
 
 
-def measures_in(metrics: MetricTable) -> tuple[Measure, ...]:
-    """The report's measures that were taken here."""
-    rows = metrics.rows
-    return tuple(m for m in MEASURES if m.name in rows and rows[m.name].notna().any())
+@dataclass(frozen=True)
+class _Laps:
+    """Behind each answer: the person, the two modes, and the metrics of A less those of B, (answer,
+    metric)."""
+
+    person: IntArray
+    mode_a: IntArray
+    mode_b: IntArray
+    difference: FloatArray
 
 
-def mode_measures(metrics: MetricTable, modes: Sequence[str], seed: int) -> tuple[ModeMeasure, ...]:
-    """Every measure of every mode that has it."""
-    found = []
-    for measure in measures_in(metrics):
-        draws = _mean_draws(metrics, measure.name, modes, seed)
-        own = _own_means(metrics, measure.name)
-        for k, mode in enumerate(modes):
-            known = own[mode].dropna() if mode in own else pd.Series(dtype=float)
-            if len(known):
-                low, high = hdi(draws[:, k], HDI_PROBABILITY) if len(known) > 1 else (nan, nan)
-                found.append(
-                    ModeMeasure(measure.name, mode, float(known.mean()), float(low), float(high), len(known))
-                )
-    return tuple(found)
+@dataclass(frozen=True)
+class _Products:
+    """Sums over each person's comparisons, of shape (person,): metric with answer, metric, answer."""
+
+    crossed: FloatArray
+    metric: FloatArray
+    answer: FloatArray
+    comparisons: int
+    participants: int
 
 
-def associations(table: ResponseTable, fit: Fit, metrics: MetricTable) -> tuple[Association, ...]:
-    """Every question of the fit with every measure."""
-    seed = fit.settings.seed
-    found = []
-    for measure in measures_in(metrics):
-        means = _mean_draws(metrics, measure.name, fit.modes, seed)
-        for question in fit.questions:
-            n_modes, across = _across_modes(
-                question, means[:, [fit.modes.index(m) for m in question.mode_names]]
-            )
-            n, rho = _across_comparisons(table, question, metrics, measure.name, seed)
-            found.append(
-                Association(
-                    question.question.name,
-                    measure.name,
-                    n_modes,
-                    *_summary(across),
-                    n,
-                    *_summary(rho),
-                    float((rho > 0).mean() + 0.5 * (rho == 0).mean()) if rho.size else nan,
-                )
-            )
-    order = [q.question.name for q in fit.questions]
-    return tuple(sorted(found, key=lambda a: order.index(a.question)))
+def associations(table: ResponseTable, metrics: MetricTable, seed: int = 2017) -> tuple[Association, ...]:
+    """Every question with every measure; the seed is for the flips with more than twelve people."""
+    names = [measure.name for measure in measures_in(metrics)]
+    rows = table.rows[~table.rows["check"].astype(bool)]
+    laps = _laps(rows, metrics, names)
+    asked = rows["question"].to_numpy()
+    pairs, products, shares = [], [], []
+    for question in table.questions:
+        own = np.flatnonzero(asked == question.name)
+        towards_a = _towards_a(rows["response"].to_numpy()[own], question.levels)
+        for k, name in enumerate(names):
+            pairs.append((question.name, name))
+            products.append(_products(laps.person[own], laps.difference[own, k], towards_a))
+            shares.append(_mode_share(laps.mode_a[own], laps.mode_b[own], laps.difference[own, k]))
+    if not pairs:
+        return ()
+    people = int(laps.person.max(initial=-1)) + 1
+    crossed = np.zeros((people, len(pairs)))
+    for k, product in enumerate(products):
+        crossed[: len(product.crossed), k] = product.crossed
+    tests = flipped_tests(crossed, question_seed(seed, "association"))
+    return tuple(
+        _association(pair, product, share, float(alone), float(in_list))
+        for pair, product, share, alone, in_list in zip(
+            pairs, products, shares, tests.alone, tests.in_list, strict=True
+        )
+    )
 
 
-def _summary(draws: FloatArray) -> tuple[float, float, float]:
-    if not draws.size:
-        return nan, nan, nan
-    low, high = hdi(draws, HDI_PROBABILITY)
-    return float(draws.mean()), float(low), float(high)
+def association_claims(found: Sequence[Association], fit: Fit) -> tuple[Claim, ...]:
+    """The pairs of a question and a metric that pass, most certain first.
+
+    Their probability is 1 less the error rate at which they enter the list: a bound from a test of all pairs
+    together, not a posterior.
+    """
+    measures = {m.name: m for m in MEASURES}
+    shorts = {q.question.name: q.question.short or q.question.name for q in fit.questions}
+    passing = sorted((a for a in found if a.passes), key=lambda a: (a.p_in_list, -abs(a.correlation)))
+    return tuple(
+        Claim(
+            SECTION,
+            f"In single comparisons “{shorts[a.question]}” went with "
+            f"{measures[a.metric].compared(a.correlation)}.",
+            1.0 - a.p_in_list,
+            a.question,
+        )
+        for a in passing
+    )
 
 
-def _own_means(metrics: MetricTable, name: str) -> pd.DataFrame:
-    """Each participant's mean of a metric: a row a participant, a column a mode."""
-    return metrics.rows.groupby(["participant", "mode"], sort=False)[name].mean().unstack("mode")
-
-
-def mode_means(metrics: MetricTable, name: str, modes: Sequence[str]) -> FloatArray:
-    """Each mode's mean over participants of their own means, NaN where none has it: ndarray, shape
-    (mode,)."""
-    return np.asarray(_own_means(metrics, name).mean().reindex(list(modes)), dtype=float)
-
-
-def _mean_draws(metrics: MetricTable, name: str, modes: Sequence[str], seed: int) -> FloatArray:
-    """Bayesian bootstrap of each mode's mean over participants, the same weights for all: (draw, mode)."""
-    own = _own_means(metrics, name).reindex(columns=list(modes)).to_numpy(float)
-    weights = _weights(len(own), question_seed(seed, f"measure {name}"))
-    known = ~np.isnan(own)
-    with np.errstate(invalid="ignore"):
-        return np.asarray((weights @ np.where(known, own, 0.0)) / (weights @ known))
-
-
-def _weights(n: int, seed: int) -> FloatArray:
-    """Dirichlet(1) weights of n participants (Rubin 1981): shape (draw, participant)."""
-    gaps = np.random.default_rng(seed).standard_exponential((_RESAMPLES, n))
-    return np.asarray(gaps / gaps.sum(axis=1, keepdims=True))
-
-
-def _across_modes(question: QuestionFit, means: FloatArray) -> tuple[int, FloatArray]:
-    known = ~np.isnan(means).all(axis=0)
-    n = int(known.sum())
-    if question.draws is None or not question.ranked or n < 3:
-        return n, np.empty(0)
-    ability = thinned(question.draws, _RESAMPLES).ability[:_RESAMPLES, known]
-    x = means[: len(ability), known]
-    x = x - x.mean(axis=1, keepdims=True)
-    y = ability - ability.mean(axis=1, keepdims=True)
-    size = np.sqrt((x**2).sum(axis=1) * (y**2).sum(axis=1))
-    return n, ((x * y).sum(axis=1)[size > 0] / size[size > 0])
-
-
-def _across_comparisons(
-    table: ResponseTable, question: QuestionFit, metrics: MetricTable, name: str, seed: int
-) -> tuple[int, FloatArray]:
-    """Answers with both values of the metric, and bootstrap draws of the correlation."""
-    rows = table.rows
-    rows = rows[(rows["question"] == question.question.name) & ~rows["check"].astype(bool)]
-    values = metrics.rows.set_index(["comparison", "mode"])[name]
+def _laps(rows: pd.DataFrame, metrics: MetricTable, names: Sequence[str]) -> _Laps:
+    values = metrics.rows.set_index(["comparison", "mode"])[list(names)]
     of_a, of_b = (
-        values.reindex(pd.MultiIndex.from_arrays([rows["comparison"], rows[side]])).to_numpy()
+        values.reindex(pd.MultiIndex.from_arrays([rows["comparison"], rows[side]])).to_numpy(float)
         for side in ("mode_a", "mode_b")
     )
-    levels = question.question.levels
+    person, _ = pd.factorize(rows["participant"].astype(str))
+    mode = pd.factorize(rows[["mode_a", "mode_b"]].to_numpy().ravel())[0].reshape(-1, 2)
+    return _Laps(person, mode[:, 0], mode[:, 1], of_a - of_b)
+
+
+def _towards_a(responses: NDArray[np.object_], levels: int) -> FloatArray:
+    """Steps of the answers from the middle of the scale, positive towards A."""
     steps = [k for k in range(levels // 2, -(levels // 2) - 1, -1) if k or levels % 2]
-    answer = rows["response"].map(dict(zip(SCALES[levels], steps, strict=True))).to_numpy(float)
-    known = ~np.isnan(of_a - of_b)
-    x, y = _signed_ranks((of_a - of_b)[known]), _signed_ranks(answer[known])
-    if len(x) < 3 or not x.any() or not y.any():
-        return int(known.sum()), np.empty(0)
-    _, person = np.unique(rows["participant"].to_numpy()[known].astype(str), return_inverse=True)
-    weights = _weights(int(person.max()) + 1, question_seed(seed, f"{question.question.name} {name}"))
-    xy, xx, yy = (np.bincount(person, product) for product in (x * y, x * x, y * y))
-    size = np.sqrt((weights @ xx) * (weights @ yy))
-    return int(known.sum()), np.asarray((weights @ xy) / np.maximum(size, 1e-300))
+    step_of = dict(zip(SCALES[levels], steps, strict=True))
+    return np.array([step_of[response] for response in responses], dtype=float)
+
+
+def _products(person: IntArray, difference: FloatArray, towards_a: FloatArray) -> _Products:
+    measured = ~np.isnan(difference)
+    own = np.bincount(person[measured], minlength=int(person.max(initial=-1)) + 1)
+    used = measured & (own >= 2)[person]
+    metric, answer = (
+        _centred(_signed_ranks(values[used]), person[used], len(own)) for values in (difference, towards_a)
+    )
+    crossed, metric_squared, answer_squared = (
+        np.bincount(person[used], product, len(own)).astype(float)
+        for product in (metric * answer, metric**2, answer**2)
+    )
+    return _Products(crossed, metric_squared, answer_squared, int(used.sum()), int((own >= 2).sum()))
+
+
+def _centred(values: FloatArray, person: IntArray, people: int) -> FloatArray:
+    """Less each person's mean; exactly 0 for somebody with one value throughout."""
+    count = np.maximum(np.bincount(person, minlength=people), 1)
+    centred = values - (np.bincount(person, values, people) / count)[person]
+    return np.asarray(np.where(np.abs(centred) > 1e-9 * np.abs(values).max(initial=0.0), centred, 0.0))
 
 
 def _signed_ranks(values: FloatArray) -> FloatArray:
@@ -225,3 +197,58 @@ def _signed_ranks(values: FloatArray) -> FloatArray:
     _, place, count = np.unique(np.abs(values), return_inverse=True, return_counts=True)
     midrank = np.cumsum(count) - (count - 1) / 2
     return np.asarray(np.sign(values) * midrank[place])
+
+
+def _association(
+    pair: tuple[str, str], own: _Products, mode_share: float, alone: float, in_list: float
+) -> Association:
+    correlation, low, high = _correlation(own)
+    is_tested = not isnan(correlation)
+    return Association(
+        *pair,
+        own.comparisons,
+        own.participants,
+        correlation,
+        low,
+        high,
+        mode_share,
+        alone if is_tested else nan,
+        in_list if is_tested else nan,
+    )
+
+
+def _correlation(own: _Products) -> tuple[float, float, float]:
+    """Correlation within people and its interval: Fisher's z, people left out one by one, Student's t."""
+    crossed, metric, answer = own.crossed, own.metric, own.answer
+    size = sqrt(metric.sum() * answer.sum())
+    if size == 0:
+        return nan, nan, nan
+    correlation = float(crossed.sum()) / size
+    took_part = (metric > 0) | (answer > 0)
+    n = int(took_part.sum())
+    left = np.sqrt((metric.sum() - metric[took_part]) * (answer.sum() - answer[took_part]))
+    if n < FEWEST_PEOPLE or left.min() <= 1e-9 * size:
+        return correlation, nan, nan
+    without = (crossed.sum() - crossed[took_part]) / left
+    if max(np.abs(without).max(), abs(correlation)) >= 1 - 1e-12:
+        return correlation, nan, nan
+    z = np.arctanh(without)
+    se = sqrt((n - 1) / n * ((z - z.mean()) ** 2).sum())
+    half = float(stdtrit(n - 1, (1 + HDI_PROBABILITY) / 2)) * se
+    middle = float(np.arctanh(correlation))
+    return correlation, float(np.tanh(middle - half)), float(np.tanh(middle + half))
+
+
+def _mode_share(mode_a: IntArray, mode_b: IntArray, difference: FloatArray) -> float:
+    """Least squares of the differences on the two modes; NaN where no laps differ."""
+    measured = ~np.isnan(difference)
+    a, b, d = mode_a[measured], mode_b[measured], difference[measured]
+    total = float((d**2).sum())
+    if total == 0:
+        return nan
+    n_modes = int(max(a.max(), b.max())) + 1
+    met = np.bincount(a * n_modes + b, minlength=n_modes**2).reshape(n_modes, n_modes)
+    met = met + met.T
+    lead = np.bincount(a, d, n_modes) - np.bincount(b, d, n_modes)
+    of_modes = np.linalg.pinv(np.diag(met.sum(axis=1)) - met, hermitian=True) @ lead
+    return min(1.0, float(lead @ of_modes) / total)

@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from analysis.answer_shares import PairShares, answer_shares
-from analysis.association import Association, ModeMeasure, associations, mode_measures
+from analysis.association import Association, associations
 from analysis.consistency import Consistency, consistencies
 from analysis.equality_reach import EqualityReach, reach_of
 from analysis.equivalence import Equivalence, equivalences
+from analysis.measures import ModeMeasure, mode_measures
 from analysis.monte_carlo import MonteCarloError, monte_carlo_errors
 from analysis.persons import Agreement, agreements
 from analysis.predictive import PredictiveChecks, predictive_checks
@@ -54,8 +55,8 @@ def closer_look(table: ResponseTable, fit: Fit, metrics: MetricTable | None = No
         agreements(table, fit, seed),
         consistencies(table),
         predictive_checks(table, fit),
-        mode_measures(metrics, fit.modes, seed) if metrics is not None else (),
-        associations(table, fit, metrics) if metrics is not None else (),
+        mode_measures(metrics, fit.modes) if metrics is not None else (),
+        associations(table, metrics, seed) if metrics is not None else (),
         monte_carlo_errors(fit),
         reach_of(fit),
     )

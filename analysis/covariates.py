@@ -16,17 +16,21 @@ associations" (regression on estimates that carry a covariance); Gelman 2006, "P
 variance parameters in hierarchical models" (HalfNormal and few groups).
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.association import FEWEST_MODES, measures_in, mode_means
+from analysis.association import LIST_ERROR
+from analysis.measures import measures_in, mode_means
 from analysis.results import HDI_PROBABILITY, Draws, Fit
 from analysis.zero_sum import zero_sum_basis
 from data.responses import MetricTable
 
 FloatArray = NDArray[np.float64]
+FEWEST_MODES = 4
+"""A line through fewer worths than these says nothing: no model of worth on a metric is fitted."""
 SLOPE_SD = 1.0
 """Scale of Normal(0, .) on the slope [logit per sd over modes]. Untuned: as wide as abilities."""
 RESIDUAL_SD_SCALE = 1.0
@@ -52,6 +56,9 @@ class CovariateEffect:
         Posterior probability of a slope above 0.
     residual_sd : float
         Posterior mean of what the metric leaves of the abilities [logit].
+    p_in_list : float
+        Posterior probability of the smaller side of 0, doubled, and corrected for the number of slopes after
+        Holm (1979): the list of those up to `LIST_ERROR` is all right with a probability of 95 % or more.
     """
 
     question: str
@@ -63,11 +70,12 @@ class CovariateEffect:
     slope_hdi_high: float
     p_positive: float
     residual_sd: float
+    p_in_list: float = 1.0
 
     @property
     def is_clear(self) -> bool:
-        """Whether the interval leaves out 0."""
-        return not self.slope_hdi_low <= 0 <= self.slope_hdi_high
+        """Whether the slope may be named in a list of which all is right with a probability of 95 %."""
+        return self.p_in_list <= LIST_ERROR
 
 
 def covariate_refusal(fit: Fit, metrics: MetricTable | None) -> str:
@@ -98,12 +106,44 @@ def covariate_effects(fit: Fit, metrics: MetricTable | None) -> tuple[CovariateE
     why."""
     if metrics is None or covariate_refusal(fit, metrics):
         return ()
-    return tuple(
-        _effect(question.question.name, metric, sd, x, question.draws, fit.settings.prior_sd)
-        for question in fit.questions
-        if question.ranked and question.draws is not None and len(question.mode_names) >= FEWEST_MODES
-        for metric, (x, sd) in _standardised(question.mode_names, metrics).items()
-    )
+    ranked = [q for q in fit.questions if q.ranked and len(q.mode_names) >= FEWEST_MODES]
+    draws = {q.question.name: q.draws for q in ranked if q.draws is not None}
+    values = {q.question.name: _standardised(q.mode_names, metrics) for q in ranked}
+    return slopes_of(draws, values, fit.settings.prior_sd)
+
+
+def slopes_of(
+    draws: Mapping[str, Draws],
+    metrics: Mapping[str, Mapping[str, tuple[FloatArray, float]]],
+    prior_sd: float,
+) -> tuple[CovariateEffect, ...]:
+    """The slope of every question's abilities on every metric, and which of them stand in the whole list.
+
+    Parameters
+    ----------
+    draws : mapping of str to Draws
+        By question.
+    metrics : mapping of str to mapping of str to tuple
+        By question and metric: the modes' values, ndarray, shape (mode,), centred and in their own sd, and that sd.
+    prior_sd : float
+        Of the abilities, with which the draws were made.
+    """
+    effects = [
+        _effect(question, metric, sd, x, own, prior_sd)
+        for question, own in draws.items()
+        for metric, (x, sd) in metrics[question].items()
+    ]
+    tails = np.array([2 * min(e.p_positive, 1 - e.p_positive) for e in effects])
+    return tuple(replace(effect, p_in_list=float(p)) for effect, p in zip(effects, _holm(tails), strict=True))
+
+
+def _holm(p: FloatArray) -> FloatArray:
+    """Holm's (1979) step-down correction of p-values, of shape (test,)."""
+    order = np.argsort(p, kind="stable")
+    corrected = np.empty(len(p))
+    stepped = p[order] * np.arange(len(p), 0, -1)
+    corrected[order] = np.minimum(1.0, np.maximum.accumulate(stepped))
+    return corrected
 
 
 def _standardised(modes: tuple[str, ...], metrics: MetricTable) -> dict[str, tuple[FloatArray, float]]:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.association import Measure, ModeMeasure
 from analysis.figures.labels import fitted, one_line, width_px
 from analysis.figures.style import (
     DATA,
@@ -24,6 +23,7 @@ from analysis.figures.style import (
     place_axes,
     write_text,
 )
+from analysis.measures import Measure, ModeMeasure
 from analysis.results import QuestionFit
 
 if TYPE_CHECKING:

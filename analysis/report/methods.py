@@ -315,7 +315,12 @@ def _closer(look: CloserLook | None) -> str:
     if look.associations:
         said.append(
             "Metrics were averaged over the laps of a comparison, then over each participant's comparisons; "
-            "their intervals are those of the Bayesian bootstrap over participants (Rubin 1981)."
+            "the interval of a mode's mean is Student's over these means of participants, on the log scale "
+            "for what cannot be negative. Answers were correlated with metrics within participants, both as "
+            "ranks about 0 less the participant's own mean, with an interval from Fisher's z by leaving out "
+            "participants one by one (Miller 1974); all questions and metrics were tested together by "
+            "flipping the signs of whole participants and stepping down by the largest left "
+            "(Romano & Wolf 2005), at 5 % for the list."
         )
     return " ".join(said)
 
@@ -388,8 +393,9 @@ def _refits(refitted: Refits | None) -> str:
     if refitted.effects:
         said.append(
             "Abilities were regressed on one metric at a time, standardised over the modes, with a residual "
-            "for each mode, on the normal approximation of what the answers say of the abilities; a slope "
-            "is an association."
+            "for each mode, on the normal approximation of what the answers say of the abilities; slopes "
+            "were told apart from 0 by their posterior, corrected for their number (Holm 1979); a slope is "
+            "an association."
         )
     if refitted.moderation.differences:
         said.append(

@@ -1,20 +1,29 @@
 """The report's section on preference and physics: what was measured of the laps, beside the answers."""
 
+from collections.abc import Sequence
 from math import isnan
 
-from analysis.association import FEWEST_MODES, MEASURES, Association
+from analysis.association import (
+    FEWEST_TO_PASS,
+    LIST_ERROR,
+    SECTION,
+    Association,
+    association_claims,
+)
 from analysis.closer_look import CloserLook
-from analysis.covariates import SLOPE_SD, CovariateEffect
+from analysis.covariates import FEWEST_MODES, SLOPE_SD, CovariateEffect
 from analysis.figures.association import draw_association
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.figures.slopes import draw_slopes
 from analysis.figures.style import Drawing
+from analysis.measures import MEASURES
 from analysis.report.findings import listed
 from analysis.report.page import Section, Table
 from analysis.results import Fit
 
+_MEASURES = {m.name: m for m in MEASURES}
 _WORDS = {m.name: m.words for m in MEASURES}
-_MOST_SAID, _MOST_METRICS = 4, 2
+_MOST_QUESTIONS, _MOST_METRICS = 4, 3
 _PRIOR_REACH = 1.88 * SLOPE_SD
 """94 % of the prior of a slope lies within [logit]."""
 
@@ -22,22 +31,12 @@ _PRIOR_REACH = 1.88 * SLOPE_SD
 def physics_section(
     look: CloserLook, fit: Fit, tag: str, simulated: bool, is_full: bool = False
 ) -> Section | None:
-    """Pictures always, words of association, and where a model of worth on metrics is; a full report has its
-    own section on that."""
+    """Pictures always, words of association where any pass, and where a model of worth on metrics is; a full
+    report has its own section on that."""
     if not look.measures:
         return None
-    known = [m for m in MEASURES if any(x.metric == m.name for x in look.measures)]
-    words = [_said(look.associations, fit)]
-    if simulated:
-        words.append(
-            "Simulated participants answer by such metrics, as the study file says: here the association "
-            "shows the rule they were given, not what people feel."
-        )
-    words.append(
-        "This is association: the metric lies between the mode and the answer, nobody set it, and other "
-        "things that the mode changes go with it. In a comparison, too, a metric differs mostly because the "
-        "two modes do, so that both views rest on the same few modes."
-    )
+    measured = [m for m in MEASURES if any(x.metric == m.name for x in look.measures)]
+    words = _association_words(look.associations, fit, simulated)
     if not is_full:
         words.append(
             f"No model of worth on metrics is fitted: with {len(fit.modes)} modes a line goes through their "
@@ -49,25 +48,40 @@ def physics_section(
         (
             one_line(a.question),
             _WORDS[a.metric],
-            _interval(a.across_modes, a.across_modes_low, a.across_modes_high),
             f"{a.comparisons:,}",
-            _interval(a.across_comparisons, a.across_comparisons_low, a.across_comparisons_high),
-            "" if isnan(a.p_positive) else f"{percent(a.p_positive)} %",
+            f"{a.participants:,}",
+            _interval(a.correlation, a.correlation_low, a.correlation_high),
+            "" if isnan(a.mode_share) else f"{percent(a.mode_share)} %",
+            "" if isnan(a.p_in_list) else f"{a.p_in_list:.3f}",
         )
         for a in look.associations
     )
-    columns = ("Question", "Metric", "Over modes", "Comparisons", "Over comparisons", "Above 0")
-    table = Table(columns, (False, False, True, True, True, True), rows, "association.csv")
+    columns = ("Question", "Metric", "Comparisons", "People", "Within people", "From modes", "p in list")
+    table = Table(columns, (False, False, True, True, True, True, True), rows, "association.csv")
     drawings: tuple[Drawing, ...] = ()
     if any(q.ranked for q in fit.questions):
-        drawings = draw_association(fit.questions, known, look.measures, fit.modes, tag)
+        drawings = draw_association(fit.questions, measured, look.measures, fit.modes, tag)
     caption = (
-        "Worth (across) and mean metric of the laps (upwards) of each mode, with 94 % credible intervals "
-        "both ways: posterior of the worth, Bayesian bootstrap over participants of the metric. Times a lap "
-        "are of laps that were finished. In the numbers: correlation of ability and metric over the modes, "
-        "and rank correlation of the answers with the difference of the metric in the same comparison."
+        "Worth (across) and mean metric of the laps (upwards) of each mode, with 94 % intervals both ways: "
+        "of the worth from the posterior, of the metric over people. "
+        f"{_means_explained(look)}Times a lap are of laps that were finished. In the numbers: rank "
+        "correlation within people of their answers with the difference of the metric between the two laps, "
+        "with its 94 % interval over people; how much of that difference comes from the modes; and p among "
+        "all pairs of a question and a metric."
     )
-    return Section("Preference meets physics", drawings, "", caption, table, words=tuple(words))
+    return Section(SECTION, drawings, "", caption, table, words=tuple(words))
+
+
+def _means_explained(look: CloserLook) -> str:
+    """Which means are geometric, and whom they leave out."""
+    geometric = [m for m in MEASURES if any(x.metric == m.name and x.is_geometric for x in look.measures)]
+    if not geometric:
+        return ""
+    words = f"The mean is geometric for {listed([m.words for m in geometric])}"
+    with_zeros = [m.words for m in geometric if any(x.metric == m.name and x.zeros for x in look.measures)]
+    if with_zeros:
+        words += f"; the mean of {listed(with_zeros)} leaves out people at 0, and is 0 where all are"
+    return words + ". "
 
 
 def effects_section(effects: tuple[CovariateEffect, ...], reason: str, fit: Fit, tag: str) -> Section:
@@ -105,8 +119,8 @@ def effects_section(effects: tuple[CovariateEffect, ...], reason: str, fit: Fit,
     drawings = draw_slopes([q.question for q in fit.questions], effects, _WORDS, _PRIOR_REACH, tag)
     caption = (
         "How much ability goes with one standard deviation more of a metric, with 94 % credible intervals. "
-        "Filled: the interval leaves out 0. Dotted: the interval before any answer; the closer a line comes "
-        "to it, the less the answers say."
+        "Filled: told apart from 0, corrected for the number of slopes. Dotted: the interval before any "
+        "answer; the closer a line comes to it, the less the answers say."
     )
     return Section(heading, drawings, "", caption, table, words=words)
 
@@ -119,36 +133,82 @@ def _narrowed(effects: tuple[CovariateEffect, ...]) -> str:
 def _slopes_said(effects: tuple[CovariateEffect, ...]) -> str:
     clear = sorted((e for e in effects if e.is_clear), key=lambda e: -abs(e.slope_mean))
     if not clear:
-        return f"None of {len(effects):,} slopes is told apart from 0."
+        return f"None of {len(effects):,} slopes is told apart from 0, corrected for their number."
     said = [
-        f"{'more' if e.slope_mean > 0 else 'less'} {_WORDS.get(e.metric, e.metric)} with a higher place on "
-        f"{isolated(e.question)}"
-        for e in clear[:_MOST_SAID]
+        f"{_MEASURES[e.metric].compared(e.slope_mean)} with a higher place on {isolated(e.question)}"
+        for e in clear[:_MOST_QUESTIONS]
     ]
-    more = f" and {len(clear) - _MOST_SAID:,} more" if len(clear) > _MOST_SAID else ""
-    return f"{len(clear):,} of {len(effects):,} slopes are told apart from 0: {'; '.join(said)}{more}."
-
-
-def _said(found: tuple[Association, ...], fit: Fit) -> str:
-    clear = sorted((a for a in found if a.direction), key=lambda a: -abs(a.across_comparisons))
-    if not clear:
-        return "No metric goes clearly with the answers of single comparisons."
-    shorts = {q.question.name: q.question.short or q.question.name for q in fit.questions}
-    groups: dict[str, list[Association]] = {}
-    for a in clear:
-        groups.setdefault(a.question, []).append(a)
-    said = []
-    for question, own in list(groups.items())[:_MOST_SAID]:
-        metrics = [
-            f"{'more' if a.direction > 0 else 'less'} {_WORDS[a.metric]}"
-            f" ({a.across_comparisons:+.2f})".replace("-", "\u2212")
-            for a in own[:_MOST_METRICS]
-        ]
-        said.append(f"“{isolated(shorts[question])}” with {listed(metrics)}")
+    more = f" and {len(clear) - _MOST_QUESTIONS:,} more" if len(clear) > _MOST_QUESTIONS else ""
     return (
-        f"In single comparisons these went together: {'; '.join(said)}. In brackets stands the rank "
-        "correlation of the answers with the difference between the two methods' laps; the table has its "
-        "interval."
+        f"{len(clear):,} of {len(effects):,} slopes are told apart from 0, corrected for their number: all "
+        f"of these signs are right with a probability of at least {percent(1 - LIST_ERROR)} %. They are "
+        f"{'; '.join(said)}{more}."
+    )
+
+
+def _association_words(found: Sequence[Association], fit: Fit, simulated: bool) -> list[str]:
+    """What passes, with the error rate of the list and what it does not show; or that nothing does."""
+    tested = [a for a in found if not isnan(a.p_in_list)]
+    if not tested:
+        return ["No answers can be set beside metrics here: it takes people with several comparisons each."]
+    together = f"{len(tested):,} pairs of a question and a metric were tested together, people as the units"
+    claims = association_claims(found, fit)
+    if not claims:
+        people = max(a.participants for a in tested)
+        few = f" With {people} people none can: it takes {FEWEST_TO_PASS}." if people < FEWEST_TO_PASS else ""
+        return [
+            "No metric went with the answers of single comparisons more than chance allows: "
+            f"{together}, and none passed.{few}"
+        ]
+    rate = f"{percent(LIST_ERROR)} %"
+    words = [
+        f"In single comparisons these went together: {_named(found, fit)}. In brackets stands the rank "
+        "correlation within people of the answers with the difference between the two modes' laps.",
+        f"{together}. The probability that a study names any pair that does not go together is at most "
+        f"{rate}, so the false-discovery rate of its list is at most {rate} too.",
+    ]
+    if simulated:
+        words.append(
+            "Simulated participants answer by such metrics, as the study file says: here the association "
+            "shows the rule they were given, not what people feel."
+        )
+    words.append(
+        "This is association: nobody set the metric, and whatever else differs between the modes goes with "
+        f"it. {_from_modes(tested)} What comes from the modes rests on {len(fit.modes)} modes, however many "
+        "people answered."
+    )
+    return words
+
+
+def _named(found: Sequence[Association], fit: Fit) -> str:
+    shorts = {q.question.name: q.question.short or q.question.name for q in fit.questions}
+    passing = sorted((a for a in found if a.passes), key=lambda a: -abs(a.correlation))
+    by_question: dict[str, list[Association]] = {}
+    for a in passing:
+        by_question.setdefault(a.question, []).append(a)
+    shown = [(q, own[:_MOST_METRICS]) for q, own in list(by_question.items())[:_MOST_QUESTIONS]]
+    phrases = []
+    for question, own in shown:
+        metrics = [
+            f"{'more' if a.correlation > 0 else 'less'} {_WORDS[a.metric]} ({a.correlation:+.2f})".replace(
+                "-", "\u2212"
+            )
+            for a in own
+        ]
+        phrases.append(f"“{isolated(shorts[question])}” with {listed(metrics)}")
+    more = len(passing) - sum(len(own) for _, own in shown)
+    return "; ".join(phrases) + (f"; and {more:,} more, in the table" if more else "")
+
+
+def _from_modes(tested: Sequence[Association]) -> str:
+    """How much of the differences between laps is that between modes."""
+    shares = {a.metric: a.mode_share for a in tested if not isnan(a.mode_share)}
+    most, least = max(shares, key=lambda m: shares[m]), min(shares, key=lambda m: shares[m])
+    if most == least:
+        return f"The modes explain {percent(shares[most])} % of the differences in {_WORDS[most]}."
+    return (
+        f"Of the differences between two laps, the modes explain {percent(shares[most])} % in {_WORDS[most]} "
+        f"and {percent(shares[least])} % in {_WORDS[least]}."
     )
 
 

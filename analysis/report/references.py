@@ -96,6 +96,12 @@ SOURCES = (
         "Hamiltonian Monte Carlo. Journal of Machine Learning Research 15(47), 1593–1623.",
     ),
     Reference(
+        "Holm",
+        1979,
+        "Holm, S. (1979). A simple sequentially rejective multiple test procedure. Scandinavian Journal of "
+        "Statistics 6(2), 65–70.",
+    ),
+    Reference(
         "Johnson",
         2005,
         "Johnson, J. A. (2005). Ascertaining the validity of individual protocols from web-based personality "
@@ -133,6 +139,11 @@ SOURCES = (
         "conditional versus marginal likelihoods. Psychometrika 84(3), 802–829.",
     ),
     Reference(
+        "Miller",
+        1974,
+        "Miller, R. G. (1974). The jackknife – a review. Biometrika 61(1), 1–15.",
+    ),
+    Reference(
         "Papaspiliopoulos et al.",
         2007,
         "Papaspiliopoulos, O., Roberts, G. O. and Sköld, M. (2007). A general framework for the "
@@ -158,7 +169,10 @@ SOURCES = (
         "composite null models. Journal of the American Statistical Association 95(452), 1143–1156.",
     ),
     Reference(
-        "Rubin", 1981, "Rubin, D. B. (1981). The Bayesian bootstrap. The Annals of Statistics 9(1), 130–134."
+        "Romano & Wolf",
+        2005,
+        "Romano, J. P. and Wolf, M. (2005). Exact and approximate stepdown methods for multiple hypothesis "
+        "testing. Journal of the American Statistical Association 100(469), 94–108.",
     ),
     Reference(
         "Trefethen & Weideman",

@@ -6,13 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.association import associations
 from analysis.equivalence import EQUIVALENT_BELOW, equivalences
 from analysis.fit import fit
 from analysis.persons import agreements
 from analysis.predictive import predictive_checks
 from analysis.results import Draws, FitSettings
-from data.responses import MetricTable
 
 QUICK = FitSettings(draws=400, tune=300, chains=2)
 
@@ -58,19 +56,3 @@ def test_equal_draws_are_equal_in_practice_and_far_ones_different(divided_fit):
 
     assert (read(near).reading, read(near).p_equal) == ("equal in practice", 1.0)
     assert (read(near * 1.1).reading, read(near * 1.1).p_i_above) == ("different", 1.0)
-
-
-def test_answers_that_follow_a_metric_go_with_it_whatever_the_sides(divided, divided_fit):
-    rng = np.random.default_rng(1)
-    rows = divided.rows.assign(comparison=[f"c{k}" for k in range(len(divided.rows))])
-    laps = []
-    for row in rows.itertuples():
-        for mode, wins in ((row.mode_a, row.response == "A>B"), (row.mode_b, row.response == "B>A")):
-            laps.append((row.participant, row.comparison, mode, 10.0 - 5.0 * wins + rng.uniform(0, 1)))
-    metrics = MetricTable(
-        pd.DataFrame(laps, columns=["participant", "comparison", "mode", "force_mean_edge_n"])
-    )
-    (found,) = associations(replace(divided, rows=rows), divided_fit, metrics)
-    assert found.comparisons == 80
-    assert found.across_comparisons < -0.8
-    assert found.direction == -1
