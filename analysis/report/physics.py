@@ -56,18 +56,19 @@ def physics_section(
         )
         for a in look.associations
     )
-    columns = ("Question", "Metric", "Comparisons", "People", "Within people", "From modes", "p in list")
+    columns = ("Question", "Metric", "Comparisons", "People", "Within people", "From modes", "Corrected p")
     table = Table(columns, (False, False, True, True, True, True, True), rows, "association.csv")
     drawings: tuple[Drawing, ...] = ()
     if any(q.ranked for q in fit.questions):
         drawings = draw_association(fit.questions, measured, look.measures, fit.modes, tag)
     caption = (
         "Worth (across) and mean metric of the laps (upwards) of each mode, with 94 % intervals both ways: "
-        "of the worth from the posterior, of the metric over people. "
+        "of the worth from the posterior, of the metric over people; as the same people met several modes, "
+        "intervals of a metric that overlap do not say that modes are alike. "
         f"{_means_explained(look)}Times a lap are of laps that were finished. In the numbers: rank "
         "correlation within people of their answers with the difference of the metric between the two laps, "
-        "with its 94 % interval over people; how much of that difference comes from the modes; and p among "
-        "all pairs of a question and a metric."
+        "with its 94 % interval over people, each by itself; how much of that difference comes from the "
+        "modes; and p, corrected for all pairs of a question and a metric."
     )
     return Section(SECTION, drawings, "", caption, table, words=tuple(words))
 

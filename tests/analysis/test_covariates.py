@@ -16,6 +16,7 @@ from analysis.covariates import (
     _effect,
     covariate_effects,
     covariate_refusal,
+    slopes_of,
 )
 from analysis.fit import fit
 from analysis.report.physics import effects_section
@@ -90,6 +91,23 @@ def test_slope_and_residual_are_those_of_the_model_integrated_by_brute_force():
         np.sqrt(weight.sum(axis=1) @ slopes**2 - (weight.sum(axis=1) @ slopes) ** 2), abs=0.02
     )
     assert found.residual_sd == pytest.approx(weight.sum(axis=0) @ spreads, abs=0.02)
+
+
+def test_a_slope_that_is_clear_by_itself_is_not_among_many():
+    rng = np.random.default_rng(5)
+    basis, x = zero_sum_basis(8), np.linspace(-1.5, 1.5, 8)
+    mean = basis.T @ (0.55 * x + 0.4 * np.resize([1.0, -1.0, -1.0, 1.0], 8))
+    ability = (mean + 0.3 * rng.normal(size=(2, 2000, 7))) @ basis.T
+    draws = Draws(ability, ability, {}, np.zeros((2, 2000), bool))
+    others = {f"m{k}": (rng.permutation(x), 1.0) for k in range(19)}
+    (alone,) = slopes_of({"Q1": draws}, {"force": (x, 1.0)}, 1.0)
+    among = slopes_of({"Q1": draws}, {"force": (x, 1.0)} | others, 1.0)
+    assert alone.slope_hdi_low > 0
+    assert alone.is_clear
+    assert among[0].slope_mean == alone.slope_mean
+    assert not any(e.is_clear for e in among)
+    tails = sorted(2 * min(e.p_positive, 1 - e.p_positive) for e in among)
+    assert min(e.p_in_list for e in among) == pytest.approx(20 * tails[0])
 
 
 def test_the_section_says_association_units_and_how_few_points_there_are(planted):

@@ -189,7 +189,7 @@ def main() -> None:
             )
         for strength in (0.0, 1.0):
             rng = np.random.default_rng([wish.seed, people, int(strength), 7])
-            true = correlation_interval(20_000, strength, rng)[0]
+            true = correlation_interval(5_000, strength, rng)[0]
             ends = [correlation_interval(people, strength, rng)[1:] for _ in range(wish.fast_sets)]
             held = [[low <= true <= high] for low, high in ends if not np.isnan(low)]
             _print(f"correlation within people, {people} people, true {true:+.2f}", held)
