@@ -16,19 +16,21 @@ associations" (regression on estimates that carry a covariance); Gelman 2006, "P
 variance parameters in hierarchical models" (HalfNormal and few groups).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from analysis.association import LIST_ERROR
-from analysis.measures import measures_in, mode_means
+from analysis.claims import Claim
+from analysis.measures import MEASURES, measures_in, mode_means
 from analysis.results import HDI_PROBABILITY, Draws, Fit
 from analysis.zero_sum import zero_sum_basis
 from data.responses import MetricTable
 
 FloatArray = NDArray[np.float64]
+SLOPES_SECTION = "Worth on metrics"
 FEWEST_MODES = 4
 """A line through fewer worths than these says nothing: no model of worth on a metric is fitted."""
 SLOPE_SD = 1.0
@@ -135,6 +137,21 @@ def slopes_of(
     ]
     tails = np.array([2 * min(e.p_positive, 1 - e.p_positive) for e in effects])
     return tuple(replace(effect, p_in_list=float(p)) for effect, p in zip(effects, _holm(tails), strict=True))
+
+
+def covariate_claims(effects: Sequence[CovariateEffect]) -> tuple[Claim, ...]:
+    """The slopes that are named, each with the posterior probability of its sign."""
+    measures = {m.name: m for m in MEASURES}
+    return tuple(
+        Claim(
+            SLOPES_SECTION,
+            f"Modes with {measures[e.metric].compared(e.slope_mean)} rank higher on {e.question}.",
+            max(e.p_positive, 1.0 - e.p_positive),
+            e.question,
+        )
+        for e in effects
+        if e.is_clear
+    )
 
 
 def _holm(p: FloatArray) -> FloatArray:

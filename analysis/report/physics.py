@@ -11,7 +11,7 @@ from analysis.association import (
     association_claims,
 )
 from analysis.closer_look import CloserLook
-from analysis.covariates import FEWEST_MODES, SLOPE_SD, CovariateEffect
+from analysis.covariates import FEWEST_MODES, SLOPE_SD, SLOPES_SECTION, CovariateEffect
 from analysis.figures.association import draw_association
 from analysis.figures.labels import isolated, one_line, percent
 from analysis.figures.slopes import draw_slopes
@@ -88,9 +88,8 @@ def _means_explained(look: CloserLook) -> str:
 def effects_section(effects: tuple[CovariateEffect, ...], reason: str, fit: Fit, tag: str) -> Section:
     """Ability on metrics, or why there is no such model."""
     n_modes = len(fit.modes)
-    heading = "Worth on metrics"
     if not effects:
-        return Section(heading, (), "", "", None, words=(reason,))
+        return Section(SLOPES_SECTION, (), "", "", None, words=(reason,))
     words = (
         "Each metric by itself was put into the model: a straight line from the modes' mean metric to their "
         "abilities, and what the line leaves. A slope is how many logits of ability go with one standard "
@@ -123,7 +122,7 @@ def effects_section(effects: tuple[CovariateEffect, ...], reason: str, fit: Fit,
         "Filled: told apart from 0, corrected for the number of slopes. Dotted: the interval before any "
         "answer; the closer a line comes to it, the less the answers say."
     )
-    return Section(heading, drawings, "", caption, table, words=words)
+    return Section(SLOPES_SECTION, drawings, "", caption, table, words=words)
 
 
 def _narrowed(effects: tuple[CovariateEffect, ...]) -> str:

@@ -10,8 +10,8 @@ import pytest
 from scipy import stats
 
 from analysis.association import Association, association_claims, associations
-from analysis.measures import MEASURES
-from analysis.report.physics import _association_words
+from analysis.measures import MEASURES, mode_measures
+from analysis.report.physics import _association_words, physics_section
 from data.answers import MIRRORED, SCALES
 from data.responses import MetricTable, QuestionScale, ResponseTable
 
@@ -172,6 +172,25 @@ def test_what_passes_is_named_with_the_error_rate_of_the_list():
     assert len(claims) == sum(a.passes for a in found) > 0
     assert min(c.probability for c in claims) >= 0.95
     assert "In single comparisons “short 0” went with less jerk." in [c.text for c in claims]
+
+
+def test_the_section_prints_every_pair_with_its_corrected_p_and_says_whom_a_mean_leaves_out():
+    rng = np.random.default_rng(6)
+    rows = schedule(7)
+    laps = draw_laps(rows, rng).rows
+    metrics = MetricTable(laps.assign(longest_lock_s=laps["longest_lock_s"].where(laps["mode"] == "M1", 0.0)))
+    table = answered(rows, lambda q: [SCALES[q.levels][k] for k in rng.integers(0, q.levels, len(rows))])
+    look = SimpleNamespace(
+        measures=mode_measures(metrics, table.modes), associations=associations(table, metrics)
+    )
+    unranked = SimpleNamespace(
+        questions=[SimpleNamespace(question=q, ranked=False) for q in QUESTIONS], modes=table.modes
+    )
+    section = physics_section(look, unranked, "", simulated=False)
+    assert section.table.columns[-1] == "Corrected p"
+    assert [row[-1] for row in section.table.rows] == [f"{a.p_in_list:.3f}" for a in found]
+    assert "the mean of longest time locked leaves out people at 0, and is 0 where all are" in section.caption
+    assert "likely" not in " ".join(section.words)
 
 
 def test_the_share_that_comes_from_the_modes_is_all_of_it_or_none():

@@ -14,6 +14,7 @@ from analysis.covariates import (
     RESIDUAL_SD_SCALE,
     SLOPE_SD,
     _effect,
+    covariate_claims,
     covariate_effects,
     covariate_refusal,
     slopes_of,
@@ -119,6 +120,9 @@ def test_the_section_says_association_units_and_how_few_points_there_are(planted
     assert "weakly identified" in said
     assert "less force at the edge with a higher place on Q1" in said
     assert section.table.rows[0][2] == "4 N"
+    (claim,) = covariate_claims(effects)
+    assert claim.text == "Modes with less force at the edge rank higher on Q1."
+    assert claim.probability == pytest.approx(1 - effects[0].p_positive)
     (drawing,) = section.drawings
     assert f"Q1, force at the edge: {effects[0].slope_mean:+.2f}" in drawing.alt
     assert "force at the edge" in re.findall(r">([^<>]+)</text>", drawing.svg)
