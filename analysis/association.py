@@ -28,9 +28,9 @@ from analysis.claims import Claim
 from analysis.engines.fast import question_seed
 from analysis.measures import FEWEST_PEOPLE, MEASURES, measures_in
 from analysis.results import HDI_PROBABILITY, Fit
-from analysis.sign_flips import flipped_tests
+from analysis.sign_flips import FlippedTests, flipped_tests
 from data.answers import SCALES
-from data.responses import MetricTable, ResponseTable
+from data.responses import MetricTable, QuestionScale, ResponseTable
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -81,10 +81,11 @@ class Association:
 
 
 @dataclass(frozen=True)
-class _Laps:
+class Laps:
     """Behind each answer: the person, the two modes, and the metrics of A less those of B, (answer,
     metric)."""
 
+    metrics: tuple[str, ...]
     person: IntArray
     mode_a: IntArray
     mode_b: IntArray
@@ -92,7 +93,7 @@ class _Laps:
 
 
 @dataclass(frozen=True)
-class _Products:
+class Products:
     """Sums over each person's comparisons, of shape (person,): metric with answer, metric, answer."""
 
     crossed: FloatArray
@@ -102,33 +103,61 @@ class _Products:
     participants: int
 
 
+@dataclass(frozen=True)
+class TestedPairs:
+    """Pairs of a question and a metric, what people add to each, and how far from chance that is."""
+
+    pairs: tuple[tuple[str, str], ...]
+    products: tuple[Products, ...]
+    flips: FlippedTests
+
+
 def associations(table: ResponseTable, metrics: MetricTable, seed: int = 2017) -> tuple[Association, ...]:
     """Every question with every measure; the seed is for the flips with more than twelve people."""
-    names = [measure.name for measure in measures_in(metrics)]
     rows = table.rows[~table.rows["check"].astype(bool)]
-    laps = _laps(rows, metrics, names)
-    asked = rows["question"].to_numpy()
-    pairs, products, shares = [], [], []
-    for question in table.questions:
-        own = np.flatnonzero(asked == question.name)
-        towards_a = _towards_a(rows["response"].to_numpy()[own], question.levels)
-        for k, name in enumerate(names):
-            pairs.append((question.name, name))
-            products.append(_products(laps.person[own], laps.difference[own, k], towards_a))
-            shares.append(_mode_share(laps.mode_a[own], laps.mode_b[own], laps.difference[own, k]))
-    if not pairs:
+    laps = laps_behind(rows, metrics)
+    if not laps.metrics or not table.questions:
         return ()
-    people = int(laps.person.max(initial=-1)) + 1
-    crossed = np.zeros((people, len(pairs)))
-    for k, product in enumerate(products):
-        crossed[: len(product.crossed), k] = product.crossed
-    tests = flipped_tests(crossed, question_seed(seed, "association"))
+    tested = tested_pairs(rows, laps, table.questions, seed)
+    asked = rows["question"].to_numpy()
     return tuple(
-        _association(pair, product, share, float(alone), float(in_list))
-        for pair, product, share, alone, in_list in zip(
-            pairs, products, shares, tests.alone, tests.in_list, strict=True
+        _association(pair, product, _mode_share(laps, asked == pair[0], pair[1]), alone, in_list)
+        for pair, product, alone, in_list in zip(
+            tested.pairs, tested.products, tested.flips.alone, tested.flips.in_list, strict=True
         )
     )
+
+
+def laps_behind(rows: pd.DataFrame, metrics: MetricTable) -> Laps:
+    """What was measured of the two laps behind each answer, none of which is an attention check."""
+    names = [measure.name for measure in measures_in(metrics)]
+    values = metrics.rows.set_index(["comparison", "mode"])[names]
+    of_a, of_b = (
+        values.reindex(pd.MultiIndex.from_arrays([rows["comparison"], rows[side]])).to_numpy(float)
+        for side in ("mode_a", "mode_b")
+    )
+    person, _ = pd.factorize(rows["participant"].astype(str))
+    mode = pd.factorize(rows[["mode_a", "mode_b"]].to_numpy().ravel())[0].reshape(-1, 2)
+    return Laps(tuple(names), person, mode[:, 0], mode[:, 1], of_a - of_b)
+
+
+def tested_pairs(
+    rows: pd.DataFrame, laps: Laps, questions: Sequence[QuestionScale], seed: int
+) -> TestedPairs:
+    """Every question with every metric, tested together; ``laps`` are those behind ``rows``."""
+    asked, responses = rows["question"].to_numpy(), rows["response"].to_numpy()
+    pairs, products = [], []
+    for question in questions:
+        own = np.flatnonzero(asked == question.name)
+        towards_a = _towards_a(responses[own], question.levels)
+        for k, name in enumerate(laps.metrics):
+            pairs.append((question.name, name))
+            products.append(_products(laps.person[own], laps.difference[own, k], towards_a))
+    crossed = np.zeros((int(laps.person.max(initial=-1)) + 1, len(pairs)))
+    for k, product in enumerate(products):
+        crossed[: len(product.crossed), k] = product.crossed
+    flips = flipped_tests(crossed, question_seed(seed, "association"))
+    return TestedPairs(tuple(pairs), tuple(products), flips)
 
 
 def association_claims(found: Sequence[Association], fit: Fit) -> tuple[Claim, ...]:
@@ -152,17 +181,6 @@ def association_claims(found: Sequence[Association], fit: Fit) -> tuple[Claim, .
     )
 
 
-def _laps(rows: pd.DataFrame, metrics: MetricTable, names: Sequence[str]) -> _Laps:
-    values = metrics.rows.set_index(["comparison", "mode"])[list(names)]
-    of_a, of_b = (
-        values.reindex(pd.MultiIndex.from_arrays([rows["comparison"], rows[side]])).to_numpy(float)
-        for side in ("mode_a", "mode_b")
-    )
-    person, _ = pd.factorize(rows["participant"].astype(str))
-    mode = pd.factorize(rows[["mode_a", "mode_b"]].to_numpy().ravel())[0].reshape(-1, 2)
-    return _Laps(person, mode[:, 0], mode[:, 1], of_a - of_b)
-
-
 def _towards_a(responses: NDArray[np.object_], levels: int) -> FloatArray:
     """Steps of the answers from the middle of the scale, positive towards A."""
     steps = [k for k in range(levels // 2, -(levels // 2) - 1, -1) if k or levels % 2]
@@ -170,7 +188,7 @@ def _towards_a(responses: NDArray[np.object_], levels: int) -> FloatArray:
     return np.array([step_of[response] for response in responses], dtype=float)
 
 
-def _products(person: IntArray, difference: FloatArray, towards_a: FloatArray) -> _Products:
+def _products(person: IntArray, difference: FloatArray, towards_a: FloatArray) -> Products:
     measured = ~np.isnan(difference)
     own = np.bincount(person[measured], minlength=int(person.max(initial=-1)) + 1)
     used = measured & (own >= 2)[person]
@@ -181,7 +199,7 @@ def _products(person: IntArray, difference: FloatArray, towards_a: FloatArray) -
         np.bincount(person[used], product, len(own)).astype(float)
         for product in (metric * answer, metric**2, answer**2)
     )
-    return _Products(crossed, metric_squared, answer_squared, int(used.sum()), int((own >= 2).sum()))
+    return Products(crossed, metric_squared, answer_squared, int(used.sum()), int((own >= 2).sum()))
 
 
 def _centred(values: FloatArray, person: IntArray, people: int) -> FloatArray:
@@ -200,7 +218,7 @@ def _signed_ranks(values: FloatArray) -> FloatArray:
 
 
 def _association(
-    pair: tuple[str, str], own: _Products, mode_share: float, alone: float, in_list: float
+    pair: tuple[str, str], own: Products, mode_share: float, alone: float, in_list: float
 ) -> Association:
     correlation, low, high = _correlation(own)
     is_tested = not isnan(correlation)
@@ -212,12 +230,12 @@ def _association(
         low,
         high,
         mode_share,
-        alone if is_tested else nan,
-        in_list if is_tested else nan,
+        float(alone) if is_tested else nan,
+        float(in_list) if is_tested else nan,
     )
 
 
-def _correlation(own: _Products) -> tuple[float, float, float]:
+def _correlation(own: Products) -> tuple[float, float, float]:
     """Correlation within people and its interval: Fisher's z, people left out one by one, Student's t."""
     crossed, metric, answer = own.crossed, own.metric, own.answer
     size = sqrt(metric.sum() * answer.sum())
@@ -239,10 +257,11 @@ def _correlation(own: _Products) -> tuple[float, float, float]:
     return correlation, float(np.tanh(middle - half)), float(np.tanh(middle + half))
 
 
-def _mode_share(mode_a: IntArray, mode_b: IntArray, difference: FloatArray) -> float:
+def _mode_share(laps: Laps, is_own: NDArray[np.bool_], metric: str) -> float:
     """Least squares of the differences on the two modes; NaN where no laps differ."""
-    measured = ~np.isnan(difference)
-    a, b, d = mode_a[measured], mode_b[measured], difference[measured]
+    difference = laps.difference[:, laps.metrics.index(metric)]
+    measured = is_own & ~np.isnan(difference)
+    a, b, d = laps.mode_a[measured], laps.mode_b[measured], difference[measured]
     total = float((d**2).sum())
     if total == 0:
         return nan

@@ -180,9 +180,8 @@ def test_the_section_prints_every_pair_with_its_corrected_p_and_says_whom_a_mean
     laps = draw_laps(rows, rng).rows
     metrics = MetricTable(laps.assign(longest_lock_s=laps["longest_lock_s"].where(laps["mode"] == "M1", 0.0)))
     table = answered(rows, lambda q: [SCALES[q.levels][k] for k in rng.integers(0, q.levels, len(rows))])
-    look = SimpleNamespace(
-        measures=mode_measures(metrics, table.modes), associations=associations(table, metrics)
-    )
+    found = associations(table, metrics)
+    look = SimpleNamespace(measures=mode_measures(metrics, table.modes), associations=found)
     unranked = SimpleNamespace(
         questions=[SimpleNamespace(question=q, ranked=False) for q in QUESTIONS], modes=table.modes
     )

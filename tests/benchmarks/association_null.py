@@ -21,7 +21,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.association import associations
+from analysis.association import LIST_ERROR, Laps, laps_behind, tested_pairs
 from data.answers import SCALES
 from data.responses import MetricTable, ResponseTable
 from data.store import Store
@@ -36,6 +36,7 @@ class Study:
 
     table: ResponseTable
     metrics: MetricTable
+    laps: Laps
     person: NDArray[np.intp]
 
 
@@ -49,7 +50,8 @@ def read(path: Path, people: int) -> Study:
     names = list(dict.fromkeys(table.rows["participant"]))[: people or None]
     rows = table.rows[table.rows["participant"].isin(names)].reset_index(drop=True)
     table = replace(table, rows=rows)
-    return Study(table, metrics, pd.factorize(rows["participant"])[0])
+    laps = laps_behind(rows, metrics)
+    return Study(table, metrics, laps, laps.person)
 
 
 def standardised(study: Study, metric: str) -> FloatArray:
@@ -108,10 +110,14 @@ def main() -> None:
             rng = np.random.default_rng([wish.seed, KINDS.index(kind), number])
             strength = wish.strength * rng.normal(1.0, 0.5, people)[study.person]
             rows = study.table.rows.assign(response=answers(study, kind, strength * lead, rng))
-            found = associations(replace(study.table, rows=rows), study.metrics, seed=number)
-            passing = [a for a in found if a.passes]
+            tested = tested_pairs(rows, study.laps, study.table.questions, seed=number)
+            passing = [
+                metric
+                for (_, metric), p in zip(tested.pairs, tested.flips.in_list, strict=True)
+                if p <= LIST_ERROR
+            ]
             named += bool(passing)
-            right += any(a.metric == wish.follow for a in passing)
+            right += wish.follow in passing
             pairs += len(passing)
         share = named / wish.sets
         error = np.sqrt(max(share * (1 - share), 1e-9) / wish.sets)
