@@ -2,9 +2,9 @@
 
 Within a person, the answer (towards A) is set beside the metric of A less that of B, both as ranks about 0
 and less the person's own mean: whoever favours a side, or always gives the same answer, adds nothing. People
-are the units: a claim takes people who agree, not many answers of a few. All questions and metrics are tested
-together, so that a report whose answers have nothing to do with any metric names one in at most 5 % of
-studies.
+are the units: what is tested is whether their own correlations lie to one side. All questions and metrics
+are tested together, so that a report whose answers have nothing to do with any metric names one in at most
+5 % of studies.
 
 Nothing is correlated over the modes: three points that have nothing to do with each other correlate above .98
 in one case of eight. `covariates` has a model for four modes and more.
@@ -94,17 +94,29 @@ class Laps:
 
 @dataclass(frozen=True)
 class Products:
-    """Sums over each person's comparisons, of shape (person,): metric with answer, metric, answer."""
+    """Sums over each person's comparisons, of shape (person,): metric with answer, metric, answer; and the
+    comparisons, of those who have at least two."""
 
     crossed: FloatArray
     metric: FloatArray
     answer: FloatArray
-    comparisons: int
-    participants: int
+    comparisons: IntArray
+
+    @property
+    def contributions(self) -> FloatArray:
+        """Each person's own correlation, in units of its sd under chance: 0 where answers or metric do not
+        vary.
+
+        Not the bare sums: with those, a person whose laps hardly differ tips no balance, and the signs of
+        seven people would say as little as those of four.
+        """
+        size = np.sqrt(self.metric * self.answer)
+        own = np.divide(self.crossed, size, out=np.zeros(len(size)), where=size > 0)
+        return np.asarray(own * np.sqrt(np.maximum(self.comparisons - 1, 0)))
 
 
 @dataclass(frozen=True)
-class TestedPairs:
+class PairTests:
     """Pairs of a question and a metric, what people add to each, and how far from chance that is."""
 
     pairs: tuple[tuple[str, str], ...]
@@ -118,7 +130,7 @@ def associations(table: ResponseTable, metrics: MetricTable, seed: int = 2017) -
     laps = laps_behind(rows, metrics)
     if not laps.metrics or not table.questions:
         return ()
-    tested = tested_pairs(rows, laps, table.questions, seed)
+    tested = pair_tests(rows, laps, table.questions, seed)
     asked = rows["question"].to_numpy()
     return tuple(
         _association(pair, product, _mode_share(laps, asked == pair[0], pair[1]), alone, in_list)
@@ -141,9 +153,7 @@ def laps_behind(rows: pd.DataFrame, metrics: MetricTable) -> Laps:
     return Laps(tuple(names), person, mode[:, 0], mode[:, 1], of_a - of_b)
 
 
-def tested_pairs(
-    rows: pd.DataFrame, laps: Laps, questions: Sequence[QuestionScale], seed: int
-) -> TestedPairs:
+def pair_tests(rows: pd.DataFrame, laps: Laps, questions: Sequence[QuestionScale], seed: int) -> PairTests:
     """Every question with every metric, tested together; ``laps`` are those behind ``rows``."""
     asked, responses = rows["question"].to_numpy(), rows["response"].to_numpy()
     pairs, products = [], []
@@ -153,11 +163,11 @@ def tested_pairs(
         for k, name in enumerate(laps.metrics):
             pairs.append((question.name, name))
             products.append(_products(laps.person[own], laps.difference[own, k], towards_a))
-    crossed = np.zeros((int(laps.person.max(initial=-1)) + 1, len(pairs)))
+    added = np.zeros((int(laps.person.max(initial=-1)) + 1, len(pairs)))
     for k, product in enumerate(products):
-        crossed[: len(product.crossed), k] = product.crossed
-    flips = flipped_tests(crossed, question_seed(seed, "association"))
-    return TestedPairs(tuple(pairs), tuple(products), flips)
+        added[: len(product.comparisons), k] = product.contributions
+    flips = flipped_tests(added, question_seed(seed, "association"))
+    return PairTests(tuple(pairs), tuple(products), flips)
 
 
 def association_claims(found: Sequence[Association], fit: Fit) -> tuple[Claim, ...]:
@@ -199,7 +209,7 @@ def _products(person: IntArray, difference: FloatArray, towards_a: FloatArray) -
         np.bincount(person[used], product, len(own)).astype(float)
         for product in (metric * answer, metric**2, answer**2)
     )
-    return Products(crossed, metric_squared, answer_squared, int(used.sum()), int((own >= 2).sum()))
+    return Products(crossed, metric_squared, answer_squared, np.where(own >= 2, own, 0))
 
 
 def _centred(values: FloatArray, person: IntArray, people: int) -> FloatArray:
@@ -224,8 +234,8 @@ def _association(
     is_tested = not isnan(correlation)
     return Association(
         *pair,
-        own.comparisons,
-        own.participants,
+        int(own.comparisons.sum()),
+        int((own.comparisons > 0).sum()),
         correlation,
         low,
         high,

@@ -318,9 +318,9 @@ def _closer(look: CloserLook | None) -> str:
             "the interval of a mode's mean is Student's over these means of participants, on the log scale "
             "for what cannot be negative. Answers were correlated with metrics within participants, both as "
             "ranks about 0 less the participant's own mean, with an interval from Fisher's z by leaving out "
-            "participants one by one (Miller 1974); all questions and metrics were tested together by "
-            "flipping the signs of whole participants and stepping down by the largest left "
-            "(Romano & Wolf 2005), at 5 % for the list."
+            "participants one by one (Miller 1974). All questions and metrics were tested together on the "
+            "participants' own correlations by flipping the signs of whole participants and stepping down "
+            "by the largest left (Romano & Wolf 2005), at 5 % for the list."
         )
     return " ".join(said)
 

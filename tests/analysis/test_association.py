@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from analysis.association import Association, association_claims, associations
+from analysis.association import Association, association_claims, associations, laps_behind, pair_tests
 from analysis.measures import MEASURES, mode_measures
 from analysis.report.physics import _association_words, physics_section
 from data.answers import MIRRORED, SCALES
@@ -63,6 +63,11 @@ def following(rows, metrics, metric, sign=1):
         [values[c, a] - values[c, b] for c, a, b in rows[["comparison", "mode_a", "mode_b"]].values]
     )
     return ["A>B" if x > 0 else "B>A" for x in sign * lead]
+
+
+def product_ranks(values):
+    """Ranks of the sizes with the signs of the values."""
+    return np.sign(values) * stats.rankdata(np.abs(values))
 
 
 def words(found):
@@ -130,6 +135,20 @@ def test_who_always_gives_the_same_answer_makes_no_pair_clearer():
     alone = found(own, ~is_line)
     assert lined.p_alone == alone.p_alone == 1 / 32
     assert lined.correlation < alone.correlation
+
+
+def test_people_whose_laps_hardly_differ_count_as_much_as_others():
+    rng = np.random.default_rng(4)
+    rows = schedule(6)
+    person = rows["participant"].str[1:].to_numpy(int)
+    lead = rng.normal(size=len(rows)) * np.where(person == 0, 1e-3, 1.0)
+    laps = [rows.assign(mode=rows["mode_a"], gain_exit=lead), rows.assign(mode=rows["mode_b"], gain_exit=0.0)]
+    table = answered(rows, lambda q: ["A>B" if x > 0 else "B>A" for x in lead], QUESTIONS[3:])
+    laps = laps_behind(table.rows, MetricTable(pd.concat(laps)))
+    (product,) = pair_tests(table.rows, laps, table.questions, seed=1).products
+    own = [np.corrcoef(product_ranks(lead)[person == p], np.sign(lead[person == p]))[0, 1] for p in range(6)]
+    assert product.contributions == pytest.approx(np.sqrt(5) * np.array(own))
+    assert product.crossed[0] < 0.5 * product.crossed[1:].min()
 
 
 def test_five_people_who_agree_do_not_pass_and_the_report_says_how_many_it_takes():

@@ -21,7 +21,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.association import LIST_ERROR, Laps, laps_behind, tested_pairs
+from analysis.association import LIST_ERROR, Laps, laps_behind, pair_tests
 from data.answers import SCALES
 from data.responses import MetricTable, ResponseTable
 from data.store import Store
@@ -110,7 +110,7 @@ def main() -> None:
             rng = np.random.default_rng([wish.seed, KINDS.index(kind), number])
             strength = wish.strength * rng.normal(1.0, 0.5, people)[study.person]
             rows = study.table.rows.assign(response=answers(study, kind, strength * lead, rng))
-            tested = tested_pairs(rows, study.laps, study.table.questions, seed=number)
+            tested = pair_tests(rows, study.laps, study.table.questions, seed=number)
             passing = [
                 metric
                 for (_, metric), p in zip(tested.pairs, tested.flips.in_list, strict=True)
