@@ -126,7 +126,8 @@ def slopes_of(
     draws : mapping of str to Draws
         By question.
     metrics : mapping of str to mapping of str to tuple
-        By question and metric: the modes' values, ndarray, shape (mode,), centred and in their own sd, and that sd.
+        By question and metric: the modes' values, ndarray, shape (mode,), centred and in their own sd, and
+        that sd.
     prior_sd : float
         Of the abilities, with which the draws were made.
     """

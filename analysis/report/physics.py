@@ -190,7 +190,7 @@ def _named(found: Sequence[Association], fit: Fit) -> str:
     phrases = []
     for question, own in shown:
         metrics = [
-            f"{'more' if a.correlation > 0 else 'less'} {_WORDS[a.metric]} ({a.correlation:+.2f})".replace(
+            f"{_MEASURES[a.metric].compared(a.correlation)} ({a.correlation:+.2f})".replace(
                 "-", "\u2212"
             )
             for a in own

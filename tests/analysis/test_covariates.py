@@ -101,8 +101,8 @@ def test_a_slope_that_is_clear_by_itself_is_not_among_many():
     ability = (mean + 0.3 * rng.normal(size=(2, 2000, 7))) @ basis.T
     draws = Draws(ability, ability, {}, np.zeros((2, 2000), bool))
     others = {f"m{k}": (rng.permutation(x), 1.0) for k in range(19)}
-    (alone,) = slopes_of({"Q1": draws}, {"force": (x, 1.0)}, 1.0)
-    among = slopes_of({"Q1": draws}, {"force": (x, 1.0)} | others, 1.0)
+    (alone,) = slopes_of({"Q1": draws}, {"Q1": {"force": (x, 1.0)}}, 1.0)
+    among = slopes_of({"Q1": draws}, {"Q1": {"force": (x, 1.0)} | others}, 1.0)
     assert alone.slope_hdi_low > 0
     assert alone.is_clear
     assert among[0].slope_mean == alone.slope_mean

@@ -44,7 +44,7 @@ def one_set(
     assert draws is not None
     draws = draws_in_order(draws, [fitted.modes.index(mode) for mode in design.modes])
     values = {f"metric {k}": (own, 1.0) for k, own in enumerate(x)}
-    return slope, slopes_of({"Q": draws}, values, SETTINGS.prior_sd)
+    return slope, slopes_of({"Q": draws}, {"Q": values}, SETTINGS.prior_sd)
 
 
 def main() -> None:
