@@ -25,6 +25,8 @@ FloatArray = NDArray[np.float64]
 NODES = 32
 _WIDER = 1.05
 """Factor on the spread of the points: what they stand for has wider tails than a normal. Untuned."""
+_EDGE = 1e-9
+"""As near as a point comes to the end of its strip: the outermost end at infinity."""
 _STEP = 1e-4
 _MOST_STEPS = 30
 
@@ -53,7 +55,11 @@ class Deviations:
 
 
 def deviations(
-    counts: Counts, model: Model, draws: ThinnedDraws, n_nodes: int = NODES
+    counts: Counts,
+    model: Model,
+    draws: ThinnedDraws,
+    n_nodes: int = NODES,
+    rng: np.random.Generator | None = None,
 ) -> Iterator[Deviations]:
     """Deviations of one participant after another, in the order of ``counts.participants``.
 
@@ -63,6 +69,9 @@ def deviations(
         By participant, also where the model takes them together.
     draws : ThinnedDraws
         Abilities in the order of ``counts.modes``.
+    rng : Generator, optional
+        To draw the points anew at every draw, each anywhere in its strip: points to choose from must reach
+        the tails, which the middles of 16 strips cut at 1.9 sd. A likelihood is steadier with the middles.
     """
     positions = _positions(model, draws)
     everyone = np.arange(len(counts.participants))
@@ -71,9 +80,11 @@ def deviations(
     prior = _log_densities(positions, np.zeros((len(positions), 1, n_own)), nobody)
     normal = spread_normal(n_own, n_nodes) if n_own else np.zeros((1, 0))
     for s in everyone:
+        if rng is not None and n_own:
+            normal = spread_normal(n_own, n_nodes, rng.random((len(positions), n_nodes, n_own)))
         own = packed(Problem(of_people(counts, everyone == s), model))
         at, log_size = _moved(_laplace(positions, own, n_own), positions, normal)
-        log_weight = _log_densities(positions, at, own) - prior + 0.5 * (normal**2).sum(axis=1)
+        log_weight = _log_densities(positions, at, own) - prior + 0.5 * (normal**2).sum(axis=-1)
         yield Deviations(at, log_weight + log_size[:, None])
 
 
@@ -89,12 +100,17 @@ def log_likelihoods(counts: Counts, model: Model, draws: ThinnedDraws, n_nodes: 
     return np.stack([person.log_likelihood for person in deviations(counts, model, draws, n_nodes)])
 
 
-def spread_normal(n_dim: int, n: int) -> FloatArray:
+def spread_normal(n_dim: int, n: int, within: float | FloatArray = 0.5) -> FloatArray:
     """Points of a standard normal, one in each of ``n`` strips of equal chance, whatever the direction.
+
+    Parameters
+    ----------
+    within : float or ndarray, shape (..., n, n_dim)
+        Where in its strip each point lies, 0 to 1.
 
     Returns
     -------
-    ndarray, shape (n, n_dim)
+    ndarray, shape (n, n_dim), or that of ``within``
 
     References
     ----------
@@ -103,7 +119,7 @@ def spread_normal(n_dim: int, n: int) -> FloatArray:
     """
     rng = np.random.default_rng(1979)
     strips = rng.permuted(np.tile(np.arange(n), (n_dim, 1)), axis=1)
-    return np.asarray(ndtri((strips.T + 0.5) / n))
+    return np.asarray(ndtri((strips.T + np.clip(within, _EDGE, 1.0 - _EDGE)) / n))
 
 
 def of_people(counts: Counts, chosen: NDArray[np.bool_]) -> Counts:

@@ -153,7 +153,7 @@ def _own_abilities(
     sd, every = draws.parameters["subject_sd"][:, None], np.arange(len(draws.ability))
     own = np.empty((len(counts.participants), *draws.ability.shape))
     effective = []
-    for s, person in enumerate(deviations(counts, model, in_order, POINTS)):
+    for s, person in enumerate(deviations(counts, model, in_order, POINTS, rng)):
         weights = np.exp(person.log_weight - person.log_weight.max(axis=1, keepdims=True))
         weights /= weights.sum(axis=1, keepdims=True)
         effective.append(1.0 / (weights**2).sum(axis=1))

@@ -190,9 +190,7 @@ def _named(found: Sequence[Association], fit: Fit) -> str:
     phrases = []
     for question, own in shown:
         metrics = [
-            f"{_MEASURES[a.metric].compared(a.correlation)} ({a.correlation:+.2f})".replace(
-                "-", "\u2212"
-            )
+            f"{_MEASURES[a.metric].compared(a.correlation)} ({a.correlation:+.2f})".replace("-", "\u2212")
             for a in own
         ]
         phrases.append(f"“{isolated(shorts[question])}” with {listed(metrics)}")

@@ -4,7 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from analysis.association import association_claims
 from analysis.closer_look import closer_look
+from analysis.covariates import covariate_claims
 from analysis.data_quality import data_quality
 from analysis.lag import LagExclusion
 from analysis.posterior import write_posterior
@@ -146,7 +148,10 @@ def write_report(
     contrasts = stuck_contrasts(stuck, rates) if stuck is not None and rates else ()
     lines = straight_lining(table, fit, pace, lambda: tell(0, STEPS, "without people who answer in a line"))
     found = findings(fit)
-    claims = report_claims(fit, found, look, refitted, stuck_claims(contrasts, rates))
+    more = (*stuck_claims(contrasts, rates), *association_claims(look.associations, fit))
+    if refitted is not None:
+        more += covariate_claims(refitted.effects)
+    claims = report_claims(fit, found, look, refitted, more)
     about_size = size_cautions(fit, found, looks, table.look)
     said = cautions(table, fit, found, study, checks, quality, look.checks, lines, about_size)
     notes = tuple(caution for caution in said if caution not in about_convergence(fit))
