@@ -26,7 +26,9 @@ MOST_PEOPLE = 60
 """More people than these are drawn from low to high and not one by one."""
 MOST_MODES = 50
 """With more modes than these too few points would count, and they would take long."""
-POINTS = 16
+_POINTS, _POINTS_OF_MANY = 32, 16
+"""For each of up to `MOST_PEOPLE` people, and of more. Measured: 94 % intervals hold 93.0 and 91.6 %; 400
+draws without an error would hold 93.2 %. 32 points cost half as much again."""
 FEWEST_POINTS = 4.0
 """Effective points a draw below which a person's worths would rest on too few of them. Untuned."""
 _FEWEST_DRAWS, _MOST_DRAWS, _MOST_IN_ALL = 100, 400, 120_000
@@ -86,6 +88,11 @@ class Agreement:
 def agreements(table: ResponseTable, fit: Fit, seed: int = 2017) -> tuple[Agreement, ...]:
     """One agreement a question, in the order of the fit."""
     return tuple(_agreement(table, fit, question, seed) for question in fit.questions)
+
+
+def points_of(people: int) -> int:
+    """Among how many points each person's abilities are chosen at a draw."""
+    return _POINTS if people <= MOST_PEOPLE else _POINTS_OF_MANY
 
 
 def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int) -> Agreement:
@@ -152,8 +159,9 @@ def _own_abilities(
     in_order = ThinnedDraws(draws.ability[:, place], draws.parameters)
     sd, every = draws.parameters["subject_sd"][:, None], np.arange(len(draws.ability))
     own = np.empty((len(counts.participants), *draws.ability.shape))
+    points = points_of(len(counts.participants))
     effective = []
-    for s, person in enumerate(deviations(counts, model, in_order, POINTS, rng)):
+    for s, person in enumerate(deviations(counts, model, in_order, points, rng)):
         weights = np.exp(person.log_weight - person.log_weight.max(axis=1, keepdims=True))
         weights /= weights.sum(axis=1, keepdims=True)
         effective.append(1.0 / (weights**2).sum(axis=1))

@@ -12,7 +12,7 @@ from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
 from analysis.event_rate import LOG_RATE_SD, MEDIAN_RATE, SPREAD_SCALE, UNKNOWN_MIN
 from analysis.figures.labels import LIKELY, isolated
 from analysis.fit import LONGER
-from analysis.persons import POINTS
+from analysis.persons import points_of
 from analysis.refits import Refits
 from analysis.report.findings import listed
 from analysis.report.line_methods import methods_of_lines
@@ -293,10 +293,12 @@ def _closer(look: CloserLook | None) -> str:
             f"{EQUIVALENT_BELOW:.2f} logits, a preference of {100 * EQUIVALENT_CHANCE:.0f} in 100 where one "
             "has to choose; the posterior probability of that region is given (Kruschke 2018)."
         )
-    if any(a.people for a in look.agreements):
+    people = max((len({p.participant for p in a.people}) for a in look.agreements), default=0)
+    if people:
         said.append(
-            f"Participants' own abilities were drawn given draws of the group's parameters: one of {POINTS} "
-            "points spread about a participant's own posterior, by their importance weights."
+            "Participants' own abilities were drawn given draws of the group's parameters: one of "
+            f"{points_of(people)} points spread about a participant's own posterior, by their importance "
+            "weights."
         )
     if look.checks.checks:
         said.append(
