@@ -7,19 +7,14 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from analysis.answer_rows import AnswerRows
+from analysis.level_names import SAME, level_names
 from analysis.new_people import Answers
-from data.answers import SCALES
 
 FloatArray = NDArray[np.float64]
 Share = Literal["wins", "ties", "level", "spread"]
 
 OVER = " over "
 """Between the modes of a pair in the name of its share of wins."""
-_NAMED: dict[int, tuple[str, ...]] = {
-    2: ("A", "B"),
-    3: ("A", "about the same", "B"),
-    5: ("much A", "A", "about the same", "B", "much B"),
-}
 
 
 def answer_quantities(
@@ -36,9 +31,9 @@ def answer_quantities(
     for column, (i, j) in enumerate(zip(*np.divmod(every, len(modes)), strict=True)):
         found["wins", f"{modes[i]}{OVER}{modes[j]}"] = shares[:, column]
     if rows.levels > 2:
-        for k, name in enumerate(_NAMED.get(rows.levels, SCALES[rows.levels])):
+        for k, name in enumerate(level_names(rows.levels)):
             share = (answers == k).mean(axis=1)
-            if rows.levels % 2 and k == half:
+            if name == SAME:
                 found["ties", ""] = share
             else:
                 found["level", name] = share

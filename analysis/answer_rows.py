@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from analysis.order import ORDER_COLUMNS, with_order
 from data.answers import SCALES
 from data.responses import QuestionScale, ResponseTable
 
@@ -31,6 +32,8 @@ class AnswerRows:
     has_people, has_order : bool
         Whether the people and the order of their answers are known. The order is that of the rows; rows that
         stand for several answers have none.
+    order : ndarray, shape (answer, 3), or None
+        As in ``Counts.order``; None where the model does not ask for it.
     """
 
     levels: int
@@ -42,6 +45,7 @@ class AnswerRows:
     before: Integers
     has_people: bool
     has_order: bool
+    order: NDArray[np.float64] | None = None
 
     @property
     def n(self) -> int:
@@ -74,11 +78,18 @@ class AnswerRows:
     def at(self, chosen: NDArray[np.generic]) -> "AnswerRows":
         """Some of the answers; what came before them is no longer known."""
         kept = {name: getattr(self, name)[chosen] for name in ("person", "mode_a", "mode_b", "level")}
+        kept["order"] = None if self.order is None else self.order[chosen]
         return replace(self, **kept, before=np.full(len(kept["level"]), -1), has_order=False)
 
 
-def answer_rows(table: ResponseTable, question: QuestionScale, modes: tuple[str, ...]) -> AnswerRows:
-    """All answers to a question but those to attention checks; ``modes`` gives the modes their places."""
+def answer_rows(
+    table: ResponseTable, question: QuestionScale, modes: tuple[str, ...], *, in_order: bool = False
+) -> AnswerRows:
+    """All answers to a question but those to attention checks; ``modes`` gives the modes their places.
+
+    ``in_order`` adds the places of comparisons that a model with ``position`` was fitted to.
+    """
+    table = with_order(table) if in_order else table
     rows = table.rows[(table.rows["question"] == question.name) & ~table.rows["check"].astype(bool)]
     has_order = table.has_participants and bool((rows["count"] <= 1).all())
     rows = rows.loc[rows.index.repeat(rows["count"].to_numpy())]
@@ -100,6 +111,7 @@ def answer_rows(table: ResponseTable, question: QuestionScale, modes: tuple[str,
         _answers_before(person, mode_a, mode_b, repetition) if has_order else np.full(len(frame), -1),
         table.has_participants,
         has_order,
+        frame[list(ORDER_COLUMNS)].to_numpy(float) if in_order else None,
     )
 
 

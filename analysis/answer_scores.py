@@ -115,11 +115,12 @@ class _OfPerson:
 
 def _tables(rows: AnswerRows, at: Parameters, n_points: int) -> _Tables:
     n_modes = len(at.ability)
-    keys, cell = np.unique(rows.mode_a * n_modes + rows.mode_b, return_inverse=True)
-    a, b = np.divmod(keys, n_modes)
+    columns = [rows.mode_a, rows.mode_b] if rows.order is None else [rows.mode_a, rows.mode_b, *rows.order.T]
+    keys, cell = np.unique(np.column_stack(columns), axis=0, return_inverse=True)
+    a, b = keys[:, 0].astype(np.int64), keys[:, 1].astype(np.int64)
     points = _points(at, n_points)
     apart = (points.ability[:, a] - points.ability[:, b]).T
-    eta = at.lead(a, b)[:, None] + apart + points.side
+    eta = at.lead(a, b, None if rows.order is None else keys[:, 2:])[:, None] + apart + points.side
 
     def log_chances(
         shift: float = 0.0, width: float = 0.0, values: Mapping[str, float] = at.values
@@ -161,7 +162,7 @@ def _tables(rows: AnswerRows, at: Parameters, n_points: int) -> _Tables:
         of_people["subject_sd"] = _OfPerson("subject_sd")
         of_people["spread_of_points"] = _OfPerson("", by_point=(points.ability**2).sum(axis=1))
     own = points.ability @ zero_sum_basis(n_modes)
-    return _Tables(cell.astype(np.int64), by_answer, of_people, own)
+    return _Tables(cell.ravel().astype(np.int64), by_answer, of_people, own)
 
 
 def _points(at: Parameters, n_points: int) -> People:
@@ -213,6 +214,12 @@ def _nuisance(
         axis=1,
     )
     columns = [ability]
+    if rows.order is not None:
+        place, before_a, before_b = rows.order.T
+        gains = [
+            before_a * (rows.mode_a == m) - before_b * (rows.mode_b == m) for m in range(len(at.ability))
+        ]
+        columns.append(slope @ np.column_stack([place, *gains]))
     for name in at.values:
         values = slope.sum(axis=1) if name == "side_effect" else by_kind.get(name)
         if values is not None:
@@ -250,7 +257,8 @@ def _left_out(
         if counts.max() > 1:
             starts = np.concatenate([[0], np.cumsum(counts)])[:-1]
             time = np.arange(rows.n) - starts[rows.person] - (counts[rows.person] - 1) / 2
-            checks["side_drift"] = slope @ time
+            if "side_drift" not in at.values:
+                checks["side_drift"] = slope @ time
             if "width" in tables.by_answer:
                 checks["width_drift"] = width @ time
     return checks

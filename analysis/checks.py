@@ -32,12 +32,12 @@ class CheckShare:
 def check_shares(table: ResponseTable) -> tuple[CheckShare, ...]:
     """Every participant with such answers, in the order of the table.
 
-    A question with two levels has no middle: both of its answers are as wrong, so it is left out.
+    A question with an even number of levels has no middle: all its answers are wrong, so it is left out.
     """
     rows = table.rows
-    two = [question.name for question in table.questions if question.levels == 2]
+    even = [question.name for question in table.questions if question.levels % 2 == 0]
     is_one_mode = rows["check"].astype(bool) & (rows["mode_a"] == rows["mode_b"])
-    asked = rows[is_one_mode & ~rows["question"].isin(two)]
+    asked = rows[is_one_mode & ~rows["question"].isin(even)]
     said = asked.assign(same=asked["count"].where(asked["response"] == SAME, 0))
     sums = said.groupby("participant", sort=False)[["count", "same"]].sum()
     return tuple(

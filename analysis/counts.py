@@ -1,11 +1,12 @@
 """Responses counted per question, participant and ordered pair: the one input of every engine."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from analysis.order import ORDER_COLUMNS, with_order
 from data.answers import SCALES
 from data.errors import InputError, one_of
 from data.responses import QuestionScale, ResponseTable
@@ -29,6 +30,9 @@ class Counts:
     participant, mode_a, mode_b : ndarray of int64, shape (cell,)
     responses : ndarray of int64, shape (cell, level)
         Counts in the order A much .. B much.
+    order : ndarray, shape (cell, 3), or None
+        When the comparisons of a cell were made, as ``analysis.order`` scales it: their place, and how often
+        A and B came before. None where it does not matter; cells of different order are kept apart.
     """
 
     question: QuestionScale
@@ -38,6 +42,7 @@ class Counts:
     mode_a: NDArray[np.int64]
     mode_b: NDArray[np.int64]
     responses: NDArray[np.int64]
+    order: NDArray[np.float64] | None = None
 
     @property
     def n(self) -> int:
@@ -46,7 +51,7 @@ class Counts:
 
     @property
     def levels(self) -> int:
-        """Answers on the scale: 2, 3 or 5."""
+        """Answers on the scale: 2 to 9."""
         return int(self.responses.shape[1])
 
     def pooled(self) -> "Counts":
@@ -59,19 +64,22 @@ class Counts:
             self.mode_a,
             self.mode_b,
             self.responses,
+            self.order,
         )
 
     def collapsed(self) -> "Counts":
-        """The same counts with ``A>>B`` taken as ``A>B`` and ``B>>A`` as ``B>A``."""
-        if self.levels < 5:
+        """The same counts without strength: every answer that prefers a mode taken as the weakest one."""
+        if self.levels <= 3:
             return self
-        merged = np.stack(
-            [self.responses[:, :2].sum(axis=1), self.responses[:, 2], self.responses[:, 3:].sum(axis=1)],
-            axis=1,
-        )
-        return Counts(
-            self.question, self.modes, self.participants, self.participant, self.mode_a, self.mode_b, merged
-        )
+        half = self.levels // 2
+        tied = self.responses[:, half : half + self.levels % 2]
+        first, second = (self.responses[:, side].sum(axis=1)[:, None] for side in self._sides)
+        return replace(self, responses=np.concatenate([first, tied, second], axis=1))
+
+    @property
+    def _sides(self) -> tuple[slice, slice]:
+        """Which answers prefer A, and which B."""
+        return slice(None, self.levels // 2), slice(-(self.levels // 2), None)
 
     def wins(self) -> NDArray[np.int64]:
         """How often each mode was preferred to each other, whatever the sides.
@@ -81,16 +89,16 @@ class Counts:
         ndarray of int64, shape (mode, mode)
             Row over column.
         """
-        half = self.levels // 2
+        for_a, for_b = self._sides
         table = np.zeros((len(self.modes), len(self.modes)), dtype=np.int64)
-        np.add.at(table, (self.mode_a, self.mode_b), self.responses[:, :half].sum(axis=1))
-        np.add.at(table, (self.mode_b, self.mode_a), self.responses[:, -half:].sum(axis=1))
+        np.add.at(table, (self.mode_a, self.mode_b), self.responses[:, for_a].sum(axis=1))
+        np.add.at(table, (self.mode_b, self.mode_a), self.responses[:, for_b].sum(axis=1))
         return table
 
     def ties(self) -> NDArray[np.int64]:
         """How often each pair was found equal: ndarray of int64, shape (mode, mode), symmetric."""
         table = np.zeros((len(self.modes), len(self.modes)), dtype=np.int64)
-        if self.levels > 2:
+        if self.levels % 2:
             middle = self.responses[:, self.levels // 2]
             np.add.at(table, (self.mode_a, self.mode_b), middle)
             np.add.at(table, (self.mode_b, self.mode_a), middle)
@@ -102,8 +110,15 @@ class Counts:
         return wins + wins.T + self.ties()
 
 
-def count_responses(table: ResponseTable, question: QuestionScale) -> Counts:
+def count_responses(table: ResponseTable, question: QuestionScale, *, in_order: bool = False) -> Counts:
     """Count the responses to one question; attention checks stay out.
+
+    Parameters
+    ----------
+    table : ResponseTable
+    question : QuestionScale
+    in_order : bool
+        Keep apart what was answered at different places of a participant's sequence.
 
     Raises
     ------
@@ -111,6 +126,8 @@ def count_responses(table: ResponseTable, question: QuestionScale) -> Counts:
         If an answer is not on the question's scale, a mode is not one of the question's, or a mode
         is compared with itself in a row that is no check.
     """
+    if in_order:
+        table = with_order(table)
     rows = table.rows[(table.rows["question"] == question.name) & ~table.rows["check"].astype(bool)]
     modes = tuple(sorted(table.modes_of(question)))
     scale = SCALES[question.levels]
@@ -129,7 +146,8 @@ def count_responses(table: ResponseTable, question: QuestionScale) -> Counts:
     known = tuple(str(name) for name in participants) if table.has_participants else _ONE_FOR_ALL
     if not table.has_participants:
         participant = np.zeros(len(rows), dtype=np.int64)
-    return _gathered(question, modes, known, participant.astype(np.int64), mode_a, mode_b, one_hot)
+    order = rows[list(ORDER_COLUMNS)].to_numpy(dtype=np.float64) if in_order else None
+    return _gathered(question, modes, known, participant.astype(np.int64), mode_a, mode_b, one_hot, order)
 
 
 def _codes(values: pd.Series, valid: tuple[str, ...], what: str) -> NDArray[np.int64]:
@@ -147,10 +165,17 @@ def _gathered(
     mode_a: NDArray[np.int64],
     mode_b: NDArray[np.int64],
     responses: NDArray[np.int64],
+    order: NDArray[np.float64] | None,
 ) -> Counts:
     """Cells of one key added up, in the order of their keys."""
     n = len(modes)
-    keys, cell = np.unique((participant * n + mode_a) * n + mode_b, return_inverse=True)
+    keys = (participant * n + mode_a) * n + mode_b
+    orders, occasion = np.zeros((1, 3)), np.zeros(len(keys), dtype=np.int64)
+    if order is not None and len(order):
+        orders, occasion = np.unique(order, axis=0, return_inverse=True)
+    keys, cell = np.unique(keys * len(orders) + occasion.ravel(), return_inverse=True)
     summed = np.zeros((len(keys), responses.shape[1]), dtype=np.int64)
     np.add.at(summed, cell, responses)
-    return Counts(question, modes, participants, keys // (n * n), keys // n % n, keys % n, summed)
+    keys, occasion = np.divmod(keys, len(orders))
+    kept = None if order is None else orders[occasion]
+    return Counts(question, modes, participants, keys // (n * n), keys // n % n, keys % n, summed, kept)

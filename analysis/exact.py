@@ -38,7 +38,7 @@ class ExactPosterior:
     ----------
     ability_mean, ability_sd, worth_mean, worth_sd, p_best : ndarray, shape (3,)
     parameter_mean, parameter_sd : dict of str to float
-        ``side_effect``, ``cut_1``, ``cut_2``, or ``log_nu``: those the model has.
+        ``side_effect``, ``cut_1``, ``cut_2`` and so on, or ``log_nu``: those the model has.
     """
 
     ability_mean: FloatArray
@@ -67,7 +67,8 @@ def exact_posterior(
     cells = counts.pooled()
     peak = maximum_a_posteriori(cells, model)
     basis = zero_sum_basis(3)
-    names = [name for name in model.parameter_names if name != "subject_sd"]
+    model = model.plain.alike
+    names = list(model.parameter_names(cells.modes))
     centre = np.concatenate([basis.T @ peak.ability, list(peak.parameters.values())])
     sd = np.sqrt(
         np.concatenate(
@@ -134,7 +135,7 @@ def exact_dirichlet_posterior(counts: Counts, points: int = 301, theta_points: i
     worth = worth_of(ability)
     # Flat on the simplex, times the Jacobian of the worths in the log-ratios.
     log_prior = np.log(worth).sum(axis=1)
-    has_ties = counts.levels > 2
+    has_ties = counts.levels % 2 == 1
     excess = np.linspace(-9.0, 6.0, theta_points) if has_ties else np.array([-np.inf])
     log_p = np.empty((len(excess), len(first)))
     for k, x in enumerate(excess):

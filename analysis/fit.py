@@ -11,6 +11,7 @@ from analysis.counts import Counts, count_responses
 from analysis.gate import Gate, reported_convergence
 from analysis.identifiability import Examination, examine, has_exchanged_sides
 from analysis.model import Problem, describe, model_of, priors
+from analysis.order import with_order
 from analysis.results import Draws, Engine, Fit, FitSettings, Link, QuestionFit
 from analysis.summaries import (
     draws_in_order,
@@ -19,6 +20,7 @@ from analysis.summaries import (
     pair_results,
     parameter_results,
 )
+from data.answers import FEWEST_LEVELS
 from data.errors import InputError, one_of
 from data.responses import QuestionScale, ResponseTable
 
@@ -29,6 +31,11 @@ LONGER = (2, 4)
 """How many times the draws are taken where the gate fails, before a question is not ranked."""
 MOST_MODES = 1000
 """More modes than this are refused: every pair of them is a row of the report."""
+NO_STRENGTH = (
+    "The gibbs engine does not know strength of preference: every longer arrow (A>>B, A>>>B and so on) was "
+    "taken as A>B or B>A."
+)
+NO_WIDTH = "On two levels people cannot differ in the width of the scale: that option is left out."
 DIVERGENCES_WORTH_SAYING = 0.001
 """Share of the draws above which divergences are mentioned. Untuned."""
 
@@ -75,6 +82,8 @@ def fit(table: ResponseTable, settings: FitSettings | None = None, progress: Pro
     """
     settings = settings or FitSettings()
     _validate(table, settings)
+    if settings.position:
+        table = with_order(table)
     tell = progress or (lambda done, total, text: None)
     prepared = [_prepare(table, question, settings) for question in table.questions]
     askable = [k for k, p in enumerate(prepared) if not p.examination.refusal]
@@ -110,6 +119,9 @@ def _validate(table: ResponseTable, settings: FitSettings) -> None:
     ):
         if given not in valid:
             raise one_of(what, given, valid)
+    if settings.engine == "gibbs" and settings.options:
+        option = settings.options[0]
+        raise InputError(f"{option}: the engine gibbs does not have this option; valid: fast, pymc")
     if settings.engine == "gibbs" and settings.link != "cumulative":
         raise InputError(f"link: {settings.link} is not known to the engine gibbs; valid: cumulative")
     if not (math.isfinite(settings.prior_sd) and settings.prior_sd > 0):
@@ -134,7 +146,7 @@ def _validate(table: ResponseTable, settings: FitSettings) -> None:
 
 
 def _prepare(table: ResponseTable, question: QuestionScale, settings: FitSettings) -> _Prepared:
-    counts = count_responses(table, question)
+    counts = count_responses(table, question, in_order=settings.position)
     is_gibbs = settings.engine == "gibbs"
     examination = examine(
         counts,
@@ -143,9 +155,11 @@ def _prepare(table: ResponseTable, question: QuestionScale, settings: FitSetting
         side_effect=settings.side_effect and not is_gibbs,
     )
     used, warnings = counts, examination.warnings
-    if is_gibbs and counts.levels == 5:
+    if is_gibbs and counts.levels > 3:
         used = counts.collapsed()
-        warnings += ("The gibbs engine knows no strength of preference: A>>B was taken as A>B, B>>A as B>A.",)
+        warnings += (NO_STRENGTH,)
+    if settings.person_scale and counts.levels == FEWEST_LEVELS:
+        warnings += (NO_WIDTH,)
     if is_gibbs and not examination.refusal:
         from analysis.engines.gibbs import IMPROPER, is_proper
 
@@ -246,7 +260,7 @@ def _question_fit(prepared: _Prepared, modes: tuple[str, ...], found: _Sampled |
         ranked=True,
         modes=mode_results(draws, modes),
         pairs=pair_results(counts, modes, draws),
-        parameters=parameter_results(draws),
+        parameters=parameter_results(draws, prepared.problem.model.parameter_names(modes)),
         warnings=said,
     )
 

@@ -21,6 +21,7 @@ from analysis.diagnostics import (
 )
 from analysis.results import Draws
 from analysis.summaries import ranks
+from analysis.wording import wording
 
 MOST_PAIRS = 5000
 """Differences that are looked at, all of a hundred modes: a millisecond each at 4,000 draws."""
@@ -28,14 +29,6 @@ _BLOCK = 256
 """Differences that are in memory at once."""
 
 FloatArray = NDArray[np.float64]
-
-_IN_WORDS = {
-    "side_effect": "the side effect",
-    "cut_1": "the first cut-point",
-    "cut_2": "the second cut-point",
-    "log_nu": "the parameter of the ties",
-    "subject_sd": "the spread between participants",
-}
 
 
 @dataclass(frozen=True)
@@ -114,7 +107,7 @@ def _quantities(draws: Draws, modes: Sequence[str]) -> Iterator[tuple[list[str],
     for what, values in by_mode.items():
         yield [f"the {what} of {mode}" for mode in modes], np.moveaxis(values, -1, 0)
     if draws.parameters:
-        yield [_IN_WORDS[name] for name in draws.parameters], np.stack(list(draws.parameters.values()))
+        yield [wording(name).sentence for name in draws.parameters], np.stack(list(draws.parameters.values()))
     ability = np.ascontiguousarray(np.moveaxis(draws.ability, -1, 0))
     pairs = watched_pairs(draws.ability)
     for k in range(0, len(pairs), _BLOCK):

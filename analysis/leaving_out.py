@@ -28,8 +28,10 @@ from analysis.counts import count_responses
 from analysis.fit import fit
 from analysis.marginal import log_likelihoods, of_people
 from analysis.model import model_behind
+from analysis.order import with_order
 from analysis.pareto import smoothed
 from analysis.results import Draws, Fit, FitSettings, Link, QuestionFit
+from data.answers import FEWEST_LEVELS
 from data.responses import ResponseTable
 
 Progress = Callable[[int, int, str], None]
@@ -40,6 +42,13 @@ SMALL_DIFFERENCE = 4.0
 """A smaller difference in elpd tells nothing, whatever its standard error (Sivula et al. 2020)."""
 _DRAWS = 1000
 """A predictive density needs fewer draws than an interval."""
+_OPTION_VARIANTS = {
+    "lapse": "careless answers",
+    "person_side": "own side effects",
+    "person_scale": "own widths of the scale",
+    "position": "position and learning",
+}
+"""What a variant with or without an option is called."""
 _AT_A_TIME = 2
 """Questions share nothing: while one is summed up, another one samples, on all cores."""
 
@@ -120,9 +129,11 @@ def _as_fast(settings: FitSettings) -> FitSettings:
 def _question_scores(
     table: ResponseTable, question: QuestionFit, fitted: Fit, base: FitSettings
 ) -> list[ModelScore]:
+    # Every variant, also without a person, keeps the places that comparisons have in the whole table.
+    table = with_order(table) if base.position or _knows_order(table) else table
     alone = replace(table, questions=(question.question,))
     points: dict[str, _Points] = {}
-    variants = _variants(base, question.question.levels)
+    variants = _variants(base, question.question.levels, _knows_order(table))
     if base.side_effect and question.draws is not None and "side_effect" not in question.draws.parameters:
         # The answers make it unknown, so that the report's own model is without it.
         del variants["without a side effect"]
@@ -134,16 +145,37 @@ def _question_scores(
     return _scores(question.question.name, points)
 
 
-def _variants(settings: FitSettings, levels: int) -> dict[str, FitSettings]:
-    """The report's model first, then one change at a time."""
+def _knows_order(table: ResponseTable) -> bool:
+    """True if every row is one answer, so that the rows say in which order answers were given."""
+    asked = ~table.rows["check"].astype(bool)
+    return bool((table.rows.loc[asked, "count"] == 1).all())
+
+
+def _variants(settings: FitSettings, levels: int, knows_order: bool) -> dict[str, FitSettings]:
+    """The report's model first, then one change at a time.
+
+    An option that is on is left out, and one that is off is switched on where it has a meaning.
+    """
     variants = {"as reported": settings}
     side = "without" if settings.side_effect else "with"
     variants[f"{side} a side effect"] = replace(settings, side_effect=not settings.side_effect)
     pooled = "people alike" if not settings.pooled else "people differ"
-    variants[pooled] = replace(settings, pooled=not settings.pooled)
+    # People who are alike differ neither in their sides nor in their widths.
+    variants[pooled] = replace(settings, pooled=not settings.pooled, person_side=False, person_scale=False)
     if levels == 3:
         other: Link = "adjacent" if settings.link == "cumulative" else "cumulative"
         variants[f"{other} link"] = replace(settings, link=other)
+    for option, what in _OPTION_VARIANTS.items():
+        means_something = (
+            option == "lapse"
+            or (option == "position" and knows_order)
+            or (option == "person_side" and not settings.pooled)
+            or (option == "person_scale" and not settings.pooled and levels > FEWEST_LEVELS)
+        )
+        if means_something:
+            is_on = getattr(settings, option)
+            name = f"{'without' if is_on else 'with'} {what}"
+            variants[name] = replace(settings, **{option: not is_on})  # type: ignore[arg-type]
     return variants
 
 
@@ -195,7 +227,7 @@ def _log_likelihoods(
 ) -> FloatArray:
     """Of every participant's answers, or of one's, to the one question: (participant, draw)."""
     (question,) = table.questions
-    counts = count_responses(table, question)
+    counts = count_responses(table, question, in_order=settings.position)
     if person is not None:
         counts = of_people(counts, np.arange(len(counts.participants)) == person)
     kept = thinned(draws, _DRAWS)

@@ -17,9 +17,9 @@ from scipy.special import logsumexp, ndtri
 from analysis.answer_shares import ThinnedDraws
 from analysis.counts import Counts
 from analysis.engines.compiled import compiled
+from analysis.engines.coordinates import Quantities, position_of
 from analysis.engines.density import log_density, packed
 from analysis.model import Model, Problem
-from analysis.zero_sum import zero_sum_basis
 
 FloatArray = NDArray[np.float64]
 NODES = 32
@@ -37,9 +37,9 @@ class Deviations:
 
     Attributes
     ----------
-    at : ndarray, shape (draw, node, mode - 1)
-        In the coordinates of ``zero_sum_basis``, in units of ``subject_sd``; none if the model knows no
-        deviations.
+    at : ndarray, shape (draw, node, own)
+        In the coordinates of ``zero_sum_basis``, in units of ``subject_sd``, then the person's own side and
+        width in units of their spreads, where the model has them; none if the model knows no deviations.
     log_weight : ndarray, shape (draw, node)
         Log of the likelihood of the person's answers times the density of the deviations in the group, over
         the density that the points were drawn from.
@@ -73,17 +73,17 @@ def deviations(
         To draw the points anew at every draw, each anywhere in its strip: points to choose from must reach
         the tails, which the middles of 16 strips cut at 1.9 sd. A likelihood is steadier with the middles.
     """
-    positions = _positions(model, draws)
+    positions = position_of(Quantities(draws.ability, draws.parameters), model, counts.modes)
     everyone = np.arange(len(counts.participants))
     nobody = packed(Problem(_silent(of_people(counts, everyone == 0)), model))
-    n_own = len(counts.modes) - 1 if model.hierarchical else 0
+    n_own = Problem(counts, model).n_own
     prior = _log_densities(positions, np.zeros((len(positions), 1, n_own)), nobody)
     normal = spread_normal(n_own, n_nodes) if n_own else np.zeros((1, 0))
     for s in everyone:
         if rng is not None and n_own:
             normal = spread_normal(n_own, n_nodes, rng.random((len(positions), n_nodes, n_own)))
         own = packed(Problem(of_people(counts, everyone == s), model))
-        at, log_size = _moved(_laplace(positions, own, n_own), positions, normal)
+        at, log_size = _moved(_laplace(positions, own, n_own), positions, normal, model)
         log_weight = _log_densities(positions, at, own) - prior + 0.5 * (normal**2).sum(axis=-1)
         yield Deviations(at, log_weight + log_size[:, None])
 
@@ -133,6 +133,7 @@ def of_people(counts: Counts, chosen: NDArray[np.bool_]) -> Counts:
         mode_a=counts.mode_a[kept],
         mode_b=counts.mode_b[kept],
         responses=counts.responses[kept],
+        order=None if counts.order is None else counts.order[kept],
     )
 
 
@@ -144,21 +145,8 @@ def _silent(counts: Counts) -> Counts:
         mode_a=counts.mode_a[:0],
         mode_b=counts.mode_b[:0],
         responses=counts.responses[:0],
+        order=None if counts.order is None else counts.order[:0],
     )
-
-
-def _positions(model: Model, draws: ThinnedDraws) -> FloatArray:
-    """Draws in the sampler's coordinates, shape (draw, n_global): the order of ``engines.density``."""
-    columns = [draws.ability @ zero_sum_basis(draws.ability.shape[1])]
-    cut = np.zeros(len(draws.ability))
-    for name in model.parameter_names:
-        value = draws.parameters[name]
-        if name.startswith("cut_"):
-            value, cut = np.log(value - cut), value
-        elif name == "subject_sd":
-            value = np.log(value)
-        columns.append(value[:, None])
-    return np.ascontiguousarray(np.concatenate(columns, axis=1))
 
 
 @dataclass(frozen=True)
@@ -182,8 +170,11 @@ class _Laplace:
 
 
 def _laplace(positions: FloatArray, data: NDArray[np.int64], n_own: int) -> _Laplace:
-    """Newton's way to the most likely deviations; the density falls off to all sides (it is log-concave in a
-    person's own coordinates), so that it is short."""
+    """Newton's way to the most likely deviations.
+
+    It is short: without options the density is log-concave in a person's own coordinates. Where lapses and
+    widths bend it the other way, a step that would go down is one along the slope instead.
+    """
     middle = positions.mean(axis=0)
     x, slope = np.concatenate([middle, np.zeros(n_own)]), np.empty(len(middle) + n_own)
 
@@ -200,6 +191,8 @@ def _laplace(positions: FloatArray, data: NDArray[np.int64], n_own: int) -> _Lap
     for _ in range(_MOST_STEPS if n_own else 0):
         value, gradient = at(best)
         step = np.linalg.solve(curvature(best), gradient)
+        if step @ gradient < 0:
+            step = gradient
         while at(best + step)[0] < value - _STEP:
             step = step / 2
         best = best + step
@@ -209,7 +202,9 @@ def _laplace(positions: FloatArray, data: NDArray[np.int64], n_own: int) -> _Lap
     return _Laplace(middle, best, axes, np.maximum(precision, 1.0))
 
 
-def _moved(found: _Laplace, positions: FloatArray, normal: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _moved(
+    found: _Laplace, positions: FloatArray, normal: FloatArray, model: Model
+) -> tuple[FloatArray, FloatArray]:
     """Points of the deviations at every draw, (draw, node, own), and the log of what they spread over.
 
     With ``d = sd z`` a person's deviations on the scale of abilities, the answers are one observation of
@@ -219,6 +214,8 @@ def _moved(found: _Laplace, positions: FloatArray, normal: FloatArray) -> tuple[
     n_own = len(found.best)
     if not n_own:
         return np.zeros((len(positions), 1, 0)), np.zeros(len(positions))
+    if model.n_own:
+        return _moved_each(found, positions, normal, model)
     sd, middle_sd = np.exp(positions[:, -1:]), np.exp(found.middle[-1])
     said = (found.precision - 1.0) / middle_sd**2
     pull = found.precision * (found.axes.T @ found.best) / middle_sd
@@ -228,6 +225,37 @@ def _moved(found: _Laplace, positions: FloatArray, normal: FloatArray) -> tuple[
     spread = _WIDER / np.sqrt(precision)
     at = (centre[:, None] + spread[:, None] * normal) @ found.axes.T
     return np.ascontiguousarray(at), np.log(spread).sum(axis=1)
+
+
+def _moved_each(
+    found: _Laplace, positions: FloatArray, normal: FloatArray, model: Model
+) -> tuple[FloatArray, FloatArray]:
+    """The same where the deviations have spreads of their own: ``d = D o`` with a diagonal ``D``.
+
+    The answers are then an observation of ``d + e`` with precision ``P``, where ``e`` is how far abilities
+    and side effect are from the middle: o has the precision ``I + D P D``, about its inverse times
+    ``D (h - P e)`` where ``h`` is the slope at no deviation.
+    """
+    n_own, n_extra = len(found.best), model.n_own
+    free = n_own - n_extra
+
+    def spreads(at: FloatArray) -> FloatArray:
+        last = np.exp(at[..., at.shape[-1] - 1 - n_extra :])
+        return np.concatenate([np.repeat(last[..., :1], free, axis=-1), last[..., 1:]], axis=-1)
+
+    sd, middle_sd = spreads(positions), spreads(found.middle)
+    curved = (found.axes * found.precision) @ found.axes.T
+    said = (curved - np.eye(n_own)) / np.outer(middle_sd, middle_sd)
+    apart = np.zeros((len(positions), n_own))
+    known = free + (model.person_side and model.side_effect)
+    apart[:, :known] = positions[:, :known] - found.middle[:known]
+    pull = sd * ((curved @ found.best) / middle_sd - apart @ said)
+    lower = np.linalg.cholesky(np.eye(n_own) + sd[:, :, None] * said * sd[:, None, :])
+    upper = np.swapaxes(lower, 1, 2)
+    centre = np.linalg.solve(upper, np.linalg.solve(lower, pull[..., None]))
+    at = np.swapaxes(centre + _WIDER * np.linalg.solve(upper, np.swapaxes(normal, -1, -2)), 1, 2)
+    size = n_own * np.log(_WIDER) - np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
+    return np.ascontiguousarray(at), size
 
 
 @compiled()

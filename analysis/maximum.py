@@ -17,6 +17,7 @@ from analysis.model import (
     Model,
     adjacent_log_probabilities,
     cumulative_log_probabilities,
+    thresholds,
 )
 from analysis.zero_sum import zero_sum_basis
 from data.errors import ElbowroomError
@@ -42,8 +43,8 @@ class Estimate:
     ability_covariance : ndarray, shape (mode, mode)
         Inverse of the negative curvature, projected on the vectors that sum to 0.
     parameters, parameter_sd : dict of str to float
-        ``side_effect``, ``log_gap_1``, ``log_gap_2``, ``log_nu``: those the model has. For three levels
-        ``log_gap_1`` is the log of Rao-Kupper's log theta.
+        ``side_effect``, ``log_gap_1``, ``log_gap_2`` and so on, ``log_nu``: those the model has. For three
+        levels ``log_gap_1`` is the log of Rao-Kupper's log theta.
     log_likelihood : float
         Without multinomial coefficients.
     """
@@ -74,7 +75,8 @@ def maximum_likelihood(counts: Counts, model: Model) -> Estimate:
 
 def _maximum(counts: Counts, model: Model, *, has_priors: bool) -> Estimate:
     cells = counts.pooled()
-    names = [n for n in model.parameter_names if n != "subject_sd"]
+    model = model.plain.alike
+    names = list(model.parameter_names(cells.modes))
     design = _design(cells, model)
     n_free = len(cells.modes) - 1
     x = np.zeros(n_free + len(names))
@@ -150,14 +152,12 @@ def _cumulative(
     value = (responses * cumulative_log_probabilities(eta, cuts, levels)).sum()
     ascending = responses[:, ::-1]
     below, above = ascending[:, :-1], ascending[:, 1:]
-    signs = np.concatenate([-np.ones(levels // 2), np.ones(levels // 2)]) if n_gaps else np.zeros(1)
-    theta = np.concatenate([-cuts[::-1], cuts]) if n_gaps else np.zeros(1)
+    theta = thresholds(cuts, levels)
     t = theta - eta[:, None]
     p = expit(t)
     slope, bend = below * (1.0 - p) - above * p, -(below + above) * p * (1.0 - p)
     # How each cut-point moves with each log-gap: shape (gap, cut-point).
-    order = np.abs(np.arange(levels - 1) - (levels - 2) / 2) + 0.5
-    moves = np.stack([signs * (order > j) * gaps[j] for j in range(n_gaps)]) if n_gaps else np.zeros((0, 1))
+    moves = gaps[:, None] * thresholds(np.tri(n_gaps).T, levels)
     d_eta = -slope.sum(axis=1)
     d_shape = moves @ slope.T
     d2 = np.empty((1 + n_gaps, 1 + n_gaps, len(eta)))
@@ -167,10 +167,13 @@ def _cumulative(
         for k in range(n_gaps):
             d2[1 + j, 1 + k] = (bend * moves[j] * moves[k]).sum(axis=1)
         d2[1 + j, 1 + j] += slope @ moves[j]
-    # The widths of the inner intervals: 2 gap_1 for ties, gap_2 on either side of them.
+    # The widths of the inner intervals: 2 gap_1 for ties, a gap on either side for every other.
+    half = levels // 2
     for j in range(n_gaps):
-        width = gaps[j] * (2.0 if j == 0 else 1.0)
-        inside = responses[:, levels // 2] if j == 0 else responses[:, 1] + responses[:, 3]
+        is_tie = j == 0 and levels % 2 == 1
+        width = gaps[j] * (2.0 if is_tie else 1.0)
+        inner = half - j - 1 + levels % 2
+        inside = responses[:, half] if is_tie else responses[:, inner] + responses[:, levels - 1 - inner]
         pull = width / np.expm1(width)
         d_shape[j] += inside * pull
         d2[1 + j, 1 + j] += inside * pull * (1.0 - pull * np.exp(width))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from analysis.answer_rows import AnswerRows
 from analysis.answer_shares import answer_probabilities
+from analysis.model import LEARNING
 from analysis.zero_sum import zero_sum_basis
 
 FloatArray = NDArray[np.float64]
@@ -21,15 +22,38 @@ _MOST_AT_ONCE = 4_000_000
 
 @dataclass(frozen=True)
 class Parameters:
-    """One draw: ``ability`` of shape (mode,), and the other parameters by name."""
+    """One draw.
+
+    Attributes
+    ----------
+    ability : ndarray, shape (mode,)
+    learning : ndarray, shape (mode,)
+        What a mode gains by use; 0 where the model has no such part.
+    values : mapping of str to float
+        The other parameters by name.
+    """
 
     ability: FloatArray
+    learning: FloatArray
     values: Mapping[str, float]
 
-    def lead(self, mode_a: Answers, mode_b: Answers) -> FloatArray:
-        """Lead of A over B of someone like the group [logit]."""
+    def lead(self, mode_a: Answers, mode_b: Answers, order: FloatArray | None) -> FloatArray:
+        """Lead of A over B of someone like the group [logit]; ``order`` is as in ``AnswerRows.order``."""
         lead = self.ability[mode_a] - self.ability[mode_b] + self.values.get("side_effect", 0.0)
+        if order is not None:
+            place, before_a, before_b = order.T
+            lead = lead + self.values.get("side_drift", 0.0) * place
+            lead = lead + self.learning[mode_a] * before_a - self.learning[mode_b] * before_b
         return np.asarray(lead)
+
+
+def parameters_of(
+    ability: FloatArray, parameters: Mapping[str, FloatArray], modes: Sequence[str], k: int
+) -> Parameters:
+    """Draw ``k`` of ``ability`` (draw, mode) and of the other parameters, each of shape (draw,)."""
+    values = {name: float(draws[k]) for name, draws in parameters.items()}
+    learning = np.array([values.pop(LEARNING + mode, 0.0) for mode in modes])
+    return Parameters(ability[k], learning, values)
 
 
 def replicated(rows: AnswerRows, at: Parameters, number: int, rng: np.random.Generator) -> Answers:
@@ -42,7 +66,7 @@ def replicated(rows: AnswerRows, at: Parameters, number: int, rng: np.random.Gen
 
 def _drawn(rows: AnswerRows, at: Parameters, number: int, rng: np.random.Generator) -> Answers:
     people = people_of(at, (number, len(rows.people)), rng.standard_normal)
-    eta = at.lead(rows.mode_a, rows.mode_b) + people.side[:, rows.person]
+    eta = at.lead(rows.mode_a, rows.mode_b, rows.order) + people.side[:, rows.person]
     eta = eta + people.ability[:, rows.person, rows.mode_a] - people.ability[:, rows.person, rows.mode_b]
     chances = chances_of(eta, at.values, rows.levels, people.width[:, rows.person])
     edges = np.cumsum(chances[..., :-1], axis=-1)
@@ -78,13 +102,8 @@ def chances_of(
 ) -> FloatArray:
     """Chance of each answer, (..., level); ``width`` broadcasts against ``eta``."""
     ones = np.ones((1,) * eta.ndim)
-    parameters = {}
-    for name, value in values.items():
-        if name.startswith("cut_"):
-            parameters[name] = np.broadcast_to(value * np.exp(width), eta.shape)
-        else:
-            parameters[name] = (value + width) * ones if name == "log_nu" else value * ones
-    chances = np.maximum(answer_probabilities(eta, parameters, levels), _LEAST_CHANCE)
+    parameters = {name: value * ones for name, value in values.items()}
+    chances = np.maximum(answer_probabilities(eta, parameters, levels, width), _LEAST_CHANCE)
     return np.asarray(chances / chances.sum(axis=-1, keepdims=True))
 
 
@@ -93,9 +112,10 @@ def chances_for_person(
 ) -> FloatArray:
     """Chance of every answer of a new person to what stands at some places: (draw, answer, level)."""
     a, b = rows.mode_a[places], rows.mode_b[places]
+    order = None if rows.order is None else rows.order[places]
     found = np.empty((len(at), len(places), rows.levels))
     for k, draw in enumerate(at):
         person = people_of(draw, (1,), rng.standard_normal)
-        eta = draw.lead(a, b) + person.side + person.ability[0, a] - person.ability[0, b]
+        eta = draw.lead(a, b, order) + person.side + person.ability[0, a] - person.ability[0, b]
         found[k] = chances_of(eta, draw.values, rows.levels, person.width)
     return found

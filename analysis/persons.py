@@ -113,7 +113,7 @@ def _agreement(table: ResponseTable, fit: Fit, question: QuestionFit, seed: int)
         return nothing(f"{why}, so nothing is known of single people's own order.")
     modes = question.mode_names
     first = max(range(len(modes)), key=lambda k: question.modes[k].p_best)
-    counts = count_responses(table, question.question)
+    counts = count_responses(table, question.question, in_order=fit.settings.position)
     number = max(_FEWEST_DRAWS, min(_MOST_DRAWS, _MOST_IN_ALL // len(counts.participants)))
     kept, rng = thinned(draws, number), np.random.default_rng(seed)
     new_person = _first_of_new_people(kept, first, rng)
@@ -166,7 +166,8 @@ def _own_abilities(
         weights /= weights.sum(axis=1, keepdims=True)
         effective.append(1.0 / (weights**2).sum(axis=1))
         chosen = (np.cumsum(weights, axis=1) < rng.random((len(every), 1))).sum(axis=1)
-        z = person.at[every, chosen.clip(max=weights.shape[1] - 1)] @ zero_sum_basis(len(modes)).T
+        own_point = person.at[every, chosen.clip(max=weights.shape[1] - 1), : len(modes) - 1]
+        z = own_point @ zero_sum_basis(len(modes)).T
         own[s][:, place] = in_order.ability + sd * z
     return own, float(np.median(effective))
 

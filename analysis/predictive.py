@@ -33,7 +33,7 @@ from analysis.answer_shares import knows_scale
 from analysis.engines.fast import question_seed
 from analysis.exchangeable import chances, residuals, sizes
 from analysis.identifiability import sides_are_alike
-from analysis.new_people import Parameters, replicated
+from analysis.new_people import Parameters, parameters_of, replicated
 from analysis.results import Draws, Fit, QuestionFit
 from data.responses import ResponseTable
 
@@ -223,14 +223,14 @@ class _Compared:
 
 def _compared(table: ResponseTable, fit: Fit, question: QuestionFit, draws: Draws) -> _Compared:
     modes = question.mode_names
-    rows = answer_rows(table, question.question, modes)
+    rows = answer_rows(table, question.question, modes, in_order=fit.settings.position)
     if not knows_scale(draws.parameters, rows.levels):
         rows = rows.collapsed()
     name = question.question.name
     rng = np.random.default_rng(question_seed(fit.settings.seed, f"predictive {name}"))
     n_in_all = rows.n
     rows = _some(rows, rng)
-    at = _one_of(draws, rng)
+    at = _one_of(draws, modes, rng)
     n_sets = _SETS_OF_FEW if rows.n <= _POINTS[1][0] else _SETS_OF_MANY
     n_points = next((points for most, points in _POINTS if rows.n <= most), _POINTS[-1][1])
     answers = np.concatenate([rows.level[None], replicated(rows, at, n_sets, rng)])
@@ -276,12 +276,10 @@ def _some(rows: AnswerRows, rng: np.random.Generator) -> AnswerRows:
     return rows.of_people(chosen)
 
 
-def _one_of(draws: Draws, rng: np.random.Generator) -> Parameters:
+def _one_of(draws: Draws, modes: tuple[str, ...], rng: np.random.Generator) -> Parameters:
     ability = draws.ability.reshape(-1, draws.ability.shape[-1])
-    k = int(rng.integers(len(ability)))
-    return Parameters(
-        ability[k], {name: float(values.reshape(-1)[k]) for name, values in draws.parameters.items()}
-    )
+    parameters = {name: values.reshape(-1) for name, values in draws.parameters.items()}
+    return parameters_of(ability, parameters, modes, int(rng.integers(len(ability))))
 
 
 def _cleared(

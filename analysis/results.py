@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 Engine = Literal["fast", "pymc", "gibbs"]
 Link = Literal["cumulative", "adjacent"]
+OPTIONS = ("lapse", "person_side", "person_scale", "position")
+"""Options of the model, as the settings name them."""
 HDI_PROBABILITY = 0.94
 """Mass of every interval that is not named otherwise."""
 
@@ -41,6 +43,9 @@ class FitSettings:
         Scale of the ability prior alone [logit].
     link : {"cumulative", "adjacent"}
         ``adjacent`` (Davidson's ties) needs three levels.
+    lapse, person_side, person_scale, position : bool
+        Options of the model, see ``analysis.model``: careless answers; each person's own side effect and own
+        width of the scale; the place of a comparison and learning.
     seed : int
     draws, tune, chains : int
         Kept and warm-up draws a chain, and chains.
@@ -53,11 +58,20 @@ class FitSettings:
     side_effect: bool = True
     prior_sd: float = 1.0
     link: Link = "cumulative"
+    lapse: bool = False
+    person_side: bool = False
+    person_scale: bool = False
+    position: bool = False
     seed: int = 2017
     draws: int = 1000
     tune: int = 500
     chains: int = 4
     target_accept: float = 0.9
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """Names of the options that are switched on."""
+        return tuple(name for name in OPTIONS if getattr(self, name))
 
     def acceptance(self, n_dim: int) -> float:
         """Acceptance rate to adapt to in so many dimensions: ``target_accept`` in few, lower in more.
@@ -86,7 +100,8 @@ class Draws:
     worth : ndarray, shape (chain, draw, mode)
         ``softmax(ability)``: sums to 1 over the modes of a draw.
     parameters : mapping of str to ndarray, shape (chain, draw)
-        ``side_effect``, ``cut_1``, ``cut_2``, ``log_nu``, ``subject_sd``: those the model has.
+        ``side_effect``, ``cut_1``, ``cut_2`` and so on, ``log_nu``, ``lapse``, ``side_drift``,
+        ``learning_MODE``, ``subject_sd``, ``side_sd``, ``scale_sd``: those the model has.
     diverging : ndarray of bool, shape (chain, draw)
     """
 

@@ -28,7 +28,7 @@ from analysis.engines.fast import question_seed
 from analysis.fit import fit as fit_again
 from analysis.identifiability import sides_are_alike
 from analysis.lag import LagChange, lag_changes
-from analysis.new_people import Parameters, chances_for_person
+from analysis.new_people import chances_for_person, parameters_of
 from analysis.results import Fit, QuestionFit
 from data.responses import PaceTable, ResponseTable
 
@@ -172,14 +172,14 @@ def _lines(table: ResponseTable, fit: Fit) -> Iterator[Line]:
 
 def _question(table: ResponseTable, fit: Fit, question: QuestionFit) -> _Question:
     assert question.draws is not None
-    rows = answer_rows(table, question.question, question.mode_names)
+    rows = answer_rows(table, question.question, question.mode_names, in_order=fit.settings.position)
     if not knows_scale(question.draws.parameters, rows.levels):
         rows = rows.collapsed()
     draws = thinned(question.draws, _DRAWS)
     name = question.question.name
     at = [
-        Parameters(ability, {key: float(values[k]) for key, values in draws.parameters.items()})
-        for k, ability in enumerate(draws.ability)
+        parameters_of(draws.ability, draws.parameters, question.mode_names, k)
+        for k in range(len(draws.ability))
     ]
     seed = question_seed(fit.settings.seed, f"in a line {name}")
 

@@ -11,7 +11,9 @@ NAN = float("nan")
 
 @dataclass(frozen=True)
 class Strength:
-    """Two modes on one question with five levels; shares are of all answers to the pair.
+    """Two modes on one question with four levels or more; shares are of all answers to the pair.
+
+    "Much" is every answer that is stronger than the weakest preference.
 
     Attributes
     ----------
@@ -41,28 +43,28 @@ class Strength:
 
 
 def strengths(fit: Fit, shares: Sequence[Sequence[PairShares]]) -> tuple[Strength, ...]:
-    """Every pair that was asked on a scale of five levels, in the order of the fit."""
+    """Every pair that was asked on a scale of four levels or more, in the order of the fit."""
     return tuple(
         _strength(question.question.name, pair)
         for question, pairs in zip(fit.questions, shares, strict=True)
-        if question.question.levels == 5
+        if question.question.levels > 3
         for pair in pairs
     )
 
 
 def _strength(question: str, pair: PairShares) -> Strength:
-    decided = pair.n - pair.counts[2]
-    much = pair.counts[0] + pair.counts[4]
-    known = (pair.expected, pair.expected_low, pair.expected_high)
-    i, j = (tuple(shares[at] if shares else NAN for shares in known) for at in (0, 4))
+    half = len(pair.counts) // 2
+    decided = pair.n - sum(pair.counts[half : half + len(pair.counts) % 2])
+    much_i, much_j = sum(pair.counts[: half - 1]), sum(pair.counts[1 - half :])
+    i, j = (much or (NAN, NAN, NAN) for much in (pair.much_i, pair.much_j))
     return Strength(
         question,
         pair.mode_i,
         pair.mode_j,
         pair.n,
-        pair.counts[0],
-        pair.counts[4],
-        much / decided if decided else NAN,
+        much_i,
+        much_j,
+        (much_i + much_j) / decided if decided else NAN,
         *i,
         *j,
     )

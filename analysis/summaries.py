@@ -1,5 +1,7 @@
 """Draws to results: abilities, worths, ranks, pairs and parameters, vectorised over modes."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -105,9 +107,9 @@ def pair_results(counts: Counts, modes: tuple[str, ...], draws: Draws | None) ->
     )
 
 
-def parameter_results(draws: Draws) -> tuple[Quantity, ...]:
-    """Posterior summary of every parameter beside the abilities."""
-    return tuple(quantity(name, values.ravel()) for name, values in draws.parameters.items())
+def parameter_results(draws: Draws, names: Sequence[str]) -> tuple[Quantity, ...]:
+    """Posterior summary of every parameter beside the abilities; ``names`` says in which order."""
+    return tuple(quantity(name, draws.parameters[name].ravel()) for name in names)
 
 
 def quantity(name: str, draws: FloatArray) -> Quantity:

@@ -12,6 +12,7 @@ from analysis.fit import fit
 from analysis.groups import largest_groups
 from analysis.lag import LagExclusion, LagLimits, lag_changes, without_laggy
 from analysis.looks import earlier
+from analysis.order import with_order
 from analysis.refits import Refits, refits
 from analysis.report import MARKER, ReportResult, write_report
 from analysis.results import Engine, Fit, FitSettings, Link
@@ -40,6 +41,11 @@ class Request:
     side_effect: bool = True
     prior_sd: float = 1.0
     link: Link = "cumulative"
+    lapse: bool = False
+    person_side: bool = False
+    person_scale: bool = False
+    position: bool = False
+    levels: int | None = None
     seed: int = 2017
     lag_limits: LagLimits = field(default_factory=LagLimits)
     full: bool = False
@@ -73,6 +79,9 @@ def make_report(request: Request) -> ReportResult:
         A folder that cannot be written, exit 1.
     """
     everything = _read(request)
+    if request.position:
+        # Places are those among all comparisons, also where some are left out later.
+        everything = replace(everything, table=with_order(everything.table))
     evidence = _without_laggy(everything, request.lag_limits)
     if request.largest_group:
         evidence = replace(evidence, table=largest_groups(evidence.table))
@@ -82,6 +91,10 @@ def make_report(request: Request) -> ReportResult:
         side_effect=request.side_effect,
         prior_sd=request.prior_sd,
         link=request.link,
+        lapse=request.lapse,
+        person_side=request.person_side,
+        person_scale=request.person_scale,
+        position=request.position,
         seed=request.seed,
     )
     check_folder(request.out, MARKER)
@@ -173,7 +186,7 @@ def _read(request: Request) -> _Evidence:
                 "--max-latency-ms and --max-skipped need a store: a CSV of responses knows no input delay"
             )
         study = open_study(request.study).study if request.study else None
-        return _Evidence(read_response_csv(request.responses, study), None, study)
+        return _Evidence(read_response_csv(request.responses, study, levels=request.levels), None, study)
     with Store.open(request.store or default_store(), create=False) as store:
         stored = store.study(request.study)
         return _Evidence(

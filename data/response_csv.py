@@ -12,9 +12,9 @@ from typing import get_args
 import numpy as np
 import pandas as pd
 
-from data.answers import ANSWERS, inferred_levels
+from data.answers import ANSWERS, SCALES, inferred_levels
 from data.csv_file import Column, CsvFile, read_csv_file
-from data.errors import InputError
+from data.errors import InputError, one_of
 from data.labels import folded, listed_names, quoted, without_the_invisible
 from data.records import Source
 from data.response_keys import check_keys
@@ -35,7 +35,7 @@ _TRUTH = {"true": True, "false": False, "1": True, "0": False, "": False}
 Problem = Callable[[str], str | None]
 
 
-def read_response_csv(path: Path, study: Study | None = None) -> ResponseTable:
+def read_response_csv(path: Path, study: Study | None = None, *, levels: int | None = None) -> ResponseTable:
     """Read a response CSV, every cell of it validated.
 
     Parameters
@@ -43,6 +43,8 @@ def read_response_csv(path: Path, study: Study | None = None) -> ResponseTable:
     path : Path
     study : Study, optional
         Says which modes, questions and levels there are; without it they come from the data.
+    levels : int, optional
+        Levels of every question's scale where there is no study; without it they are inferred.
 
     Returns
     -------
@@ -61,6 +63,8 @@ def read_response_csv(path: Path, study: Study | None = None) -> ResponseTable:
     check = _truths(file)
     _check_pairs(file, check)
     _check_scales(file, questions)
+    if study is None and levels is not None:
+        _check_levels(file, levels)
     counts = _numbers(file, "count", 1)
     keyed = check_keys(file, counts, check, _numbers(file, "repetition", 0))
     every_row = _rows(file, check, study)
@@ -74,7 +78,7 @@ def read_response_csv(path: Path, study: Study | None = None) -> ResponseTable:
     return ResponseTable(
         rows=rows,
         modes=modes,
-        questions=_scales(every_row, asked, modes, study),
+        questions=_scales(every_row, asked, modes, study, levels),
         has_participants="participant" in file.columns,
         is_simulated=bool((rows["source"] == "simulated").any()),
         sha256=file.sha256,
@@ -194,6 +198,19 @@ def _check_scales(file: CsvFile, questions: dict[str, Question] | None) -> None:
         )
 
 
+def _check_levels(file: CsvFile, levels: int) -> None:
+    """Every answer is on the scale of so many levels."""
+    if levels not in SCALES:
+        raise one_of("levels", levels, tuple(str(n) for n in SCALES))
+    response = file.columns["response"]
+    fits = np.array([answer in SCALES[levels] for answer in response.values])
+    wrong = np.flatnonzero(~fits[response.codes])
+    if wrong.size:
+        row = int(wrong[0])
+        answer, valid = response.values[response.codes[row]], ", ".join(SCALES[levels])
+        raise file.error(row, "response", f"{answer!r} is not on a scale of {levels} levels: {valid}")
+
+
 def _only_question(questions: dict[str, Question]) -> str:
     return next(iter(questions)) if len(questions) == 1 else ONLY_QUESTION
 
@@ -251,7 +268,11 @@ def _modes_as_they_appear(file: CsvFile, counted: np.ndarray) -> tuple[str, ...]
 
 
 def _scales(
-    every_row: pd.DataFrame, asked: pd.DataFrame, modes: tuple[str, ...], study: Study | None
+    every_row: pd.DataFrame,
+    asked: pd.DataFrame,
+    modes: tuple[str, ...],
+    study: Study | None,
+    levels: int | None,
 ) -> tuple[QuestionScale, ...]:
     """The questions that were asked; without a study each has the modes of its own rows."""
     names = set(asked["question"].unique())
@@ -272,9 +293,15 @@ def _scales(
             pairs = shown.get_group(name)
             own = {*pairs["mode_a"], *pairs["mode_b"]}
             of_its_own = tuple(mode for mode in modes if mode in own) if len(own) < len(modes) else ()
-            levels = inferred_levels(set(possible))
             scales.append(
-                QuestionScale(str(name), str(name), str(name), levels, levels_inferred=True, modes=of_its_own)
+                QuestionScale(
+                    str(name),
+                    str(name),
+                    str(name),
+                    levels or inferred_levels(set(possible)),
+                    levels_inferred=levels is None,
+                    modes=of_its_own,
+                )
             )
     return tuple(scales)
 

@@ -28,6 +28,10 @@ def settings_for(model: Model) -> FitSettings:
         side_effect=model.side_effect,
         prior_sd=model.prior_sd,
         link=model.link,
+        lapse=model.lapse,
+        person_side=model.person_side,
+        person_scale=model.person_scale,
+        position=model.position,
     )
 
 
@@ -105,7 +109,7 @@ def replicate(model: Model, design: Design, settings: FitSettings, seed: int, nu
     table = draw_answers(model, truth, design, rng)
     question = fit(table, replace(settings, seed=int(sampler.generate_state(1)[0]))).questions[0]
     assert question.draws is not None, "every pair is compared, so no question is refused"
-    counts = count_responses(table, table.questions[0])
+    counts = count_responses(table, table.questions[0], in_order=model.position)
     true = true_quantities(truth, counts, model, design)
     drawn = quantities(question.draws, counts, model, design)
     return Replicate(

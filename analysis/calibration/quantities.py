@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.answer_shares import answer_probabilities, group_lead
 from analysis.calibration.world import Design, Truth
 from analysis.counts import Counts
-from analysis.model import Model, adjacent_log_probabilities, cumulative_log_probabilities
+from analysis.model import Model
 from analysis.results import Draws
 from analysis.softmax import worth_of
 
@@ -32,7 +33,9 @@ def quantities(draws: Draws, counts: Counts, model: Model, design: Design) -> di
     ability, worth = (x.reshape(-1, design.n_modes) for x in (draws.ability, draws.worth))
     # A fit that leaves out the side effect, since all answers are for one side, says that it is 0.
     none = np.zeros_like(draws.ability[..., 0])
-    parameters = {name: draws.parameters.get(name, none).ravel() for name in model.parameter_names}
+    parameters = {
+        name: draws.parameters.get(name, none).ravel() for name in model.parameter_names(design.modes)
+    }
     return _named(ability, worth, parameters, counts, model, design)
 
 
@@ -64,13 +67,7 @@ def _log_likelihood(
     ability: FloatArray, parameters: dict[str, FloatArray], counts: Counts, model: Model
 ) -> FloatArray:
     cells = counts.pooled()
-    lead = ability[:, cells.mode_a] - ability[:, cells.mode_b]
-    if "side_effect" in parameters:
-        lead = lead + parameters["side_effect"][:, None]
-    if model.link == "adjacent":
-        log_p = adjacent_log_probabilities(lead, parameters["log_nu"][:, None])
-    else:
-        cuts = [parameters[f"cut_{k + 1}"] for k in range(model.n_gaps)]
-        at = np.stack(cuts, axis=-1) if cuts else np.zeros((len(ability), 0))
-        log_p = cumulative_log_probabilities(lead, at[:, None, :], model.levels)
-    return (cells.responses * log_p).sum(axis=(1, 2))
+    columns = {name: values[:, None] for name, values in parameters.items()}
+    lead = group_lead(cells, ability, columns)
+    p = answer_probabilities(lead, columns, model.levels)
+    return (cells.responses * np.log(p)).sum(axis=(1, 2))

@@ -14,7 +14,19 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.model import CUT_GAP_SCALE, LOG_NU_SD, SIDE_EFFECT_SD, SUBJECT_SD_SCALE, Model
+from analysis.model import (
+    CUT_GAP_SCALE,
+    LAPSE_BETA,
+    LEARNING,
+    LEARNING_SD,
+    LOG_NU_SD,
+    SCALE_SD_SCALE,
+    SIDE_DRIFT_SD,
+    SIDE_EFFECT_SD,
+    SIDE_SD_SCALE,
+    SUBJECT_SD_SCALE,
+    Model,
+)
 from data.answers import SCALES
 from data.errors import InputError
 from data.responses import QuestionScale, ResponseTable
@@ -22,6 +34,9 @@ from data.responses import QuestionScale, ResponseTable
 QUESTION = "calibration"
 MOST_MODES = 8
 MOST_ANSWERS = 20_000
+_NORMAL = {"side_effect": SIDE_EFFECT_SD, "log_nu": LOG_NU_SD, "side_drift": SIDE_DRIFT_SD}
+_HALF_NORMAL = {"subject_sd": SUBJECT_SD_SCALE, "side_sd": SIDE_SD_SCALE, "scale_sd": SCALE_SD_SCALE}
+"""Scales of the priors that are normal or half normal, by parameter."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +69,7 @@ class Design:
     @property
     def modes(self) -> tuple[str, ...]:
         """Names of the modes: M1, M2, ..."""
-        return tuple(f"M{k + 1}" for k in range(self.n_modes))
+        return modes_of(self.n_modes)
 
     @property
     def pairs(self) -> tuple[tuple[int, int], ...]:
@@ -65,6 +80,11 @@ class Design:
     def answers(self) -> int:
         """Answers in one replicate."""
         return self.participants * self.repetitions * len(self.pairs)
+
+
+def modes_of(n_modes: int) -> tuple[str, ...]:
+    """Names of so many modes: M1, M2, ..."""
+    return tuple(f"M{k + 1}" for k in range(n_modes))
 
 
 @dataclass(frozen=True)
@@ -86,45 +106,71 @@ class Truth:
 def draw_truth(model: Model, n_modes: int, rng: np.random.Generator) -> Truth:
     """True values from the priors of ``analysis.model``."""
     parameters: dict[str, float] = {}
-    cut = 0.0
-    for name in model.parameter_names:
-        if name == "side_effect":
-            parameters[name] = SIDE_EFFECT_SD * rng.normal()
-        elif name == "log_nu":
-            parameters[name] = LOG_NU_SD * rng.normal()
-        elif name == "subject_sd":
-            parameters[name] = SUBJECT_SD_SCALE * abs(rng.normal())
+    cut, modes = 0.0, modes_of(n_modes)
+    for name in model.parameter_names(modes):
+        if name in _NORMAL:
+            parameters[name] = _NORMAL[name] * rng.normal()
+        elif name in _HALF_NORMAL:
+            parameters[name] = _HALF_NORMAL[name] * abs(rng.normal())
+        elif name == "lapse":
+            parameters[name] = rng.beta(1.0, LAPSE_BETA)
+        elif name.startswith(LEARNING):
+            parameters[name] = LEARNING_SD * rng.normal()
         else:
             cut += CUT_GAP_SCALE * abs(rng.normal())
             parameters[name] = cut
+    if model.position:
+        mean = sum(parameters[LEARNING + mode] for mode in modes) / n_modes
+        parameters |= {LEARNING + mode: parameters[LEARNING + mode] - mean for mode in modes}
     return Truth(model.prior_sd * _zero_sum(rng.normal(size=n_modes)), parameters)
 
 
 def draw_answers(model: Model, truth: Truth, design: Design, rng: np.random.Generator) -> ResponseTable:
     """One study's answers to one question by people to whom the truth applies."""
     modes, scale = design.modes, SCALES[model.levels]
-    side, spread = truth.parameters.get("side_effect", 0.0), truth.parameters.get("subject_sd", 0.0)
+    said = {name: truth.parameters.get(name, 0.0) for name in (*_NORMAL, *_HALF_NORMAL, "lapse")}
+    gains = np.array([truth.parameters.get(LEARNING + mode, 0.0) for mode in modes])
+    n_answers, most = len(design.pairs) * design.repetitions, (design.n_modes - 1) * design.repetitions
     rows = []
     for person in range(design.participants):
-        own = truth.ability + spread * _zero_sum(rng.normal(size=design.n_modes))
-        for place, pair in enumerate(design.pairs):
-            for repetition in range(design.repetitions):
-                a, b = pair if (person + place + repetition) % 2 == 0 else pair[::-1]
-                answer = scale[_felt(own[a] - own[b] + side, model, truth, rng)]
-                rows.append((f"p{person + 1}", modes[a], modes[b], answer, repetition + 1))
+        own = truth.ability + said["subject_sd"] * _zero_sum(rng.normal(size=design.n_modes))
+        side, wider = said["side_effect"], 1.0
+        if model.person_side:
+            side += said["side_sd"] * rng.normal()
+        if model.person_scale:
+            wider = float(np.exp(said["scale_sd"] * rng.normal()))
+        met = np.zeros(design.n_modes)
+        for number, (repetition, place) in enumerate(_sequence(design, model, rng)):
+            pair = design.pairs[place]
+            a, b = pair if (person + place + repetition) % 2 == 0 else pair[::-1]
+            lead = own[a] - own[b] + side
+            if model.position:
+                now = own + gains * (met / max(most - 1, 1) - 0.5)
+                lead = now[a] - now[b] + side + said["side_drift"] * (number / max(n_answers - 1, 1) - 0.5)
+                met[[a, b]] += 1
+            answer = scale[_felt(lead, wider, model, truth, rng)]
+            if model.lapse and rng.random() < said["lapse"]:
+                answer = scale[rng.integers(model.levels)]
+            rows.append((f"p{person + 1}", modes[a], modes[b], answer, repetition + 1))
     frame = pd.DataFrame(rows, columns=["participant", "mode_a", "mode_b", "response", "repetition"])
     frame = frame.assign(question=QUESTION, count=1, comparison="", source="simulated", check=False)
     question = QuestionScale(QUESTION, QUESTION, QUESTION, model.levels)
     return ResponseTable(frame, modes, (question,), True, True, "", "simulated for calibration")
 
 
-def _felt(lead: float, model: Model, truth: Truth, rng: np.random.Generator) -> int:
+def _sequence(design: Design, model: Model, rng: np.random.Generator) -> list[tuple[int, int]]:
+    """Repetition and pair of a person's comparisons, in a random order where that matters."""
+    planned = [(r, p) for p in range(len(design.pairs)) for r in range(design.repetitions)]
+    return [planned[k] for k in rng.permutation(len(planned))] if model.position else planned
+
+
+def _felt(lead: float, wider: float, model: Model, truth: Truth, rng: np.random.Generator) -> int:
     """Place on the scale, from A much, of one person's answer to one comparison."""
     if model.link == "adjacent":
-        log_odds = np.array([lead / 2, truth.parameters["log_nu"], -lead / 2])
+        log_odds = np.array([lead / 2, truth.parameters["log_nu"] + np.log(wider), -lead / 2])
         return int(np.argmax(log_odds + rng.gumbel(size=3)))
-    cuts = [truth.parameters[f"cut_{k + 1}"] for k in range(model.n_gaps)]
-    edges = [-cut for cut in reversed(cuts)] + (cuts or [0.0])
+    cuts = [wider * truth.parameters[f"cut_{k + 1}"] for k in range(model.n_gaps)]
+    edges = [*(-cut for cut in reversed(cuts)), *([] if model.levels % 2 else [0.0]), *cuts]
     return len(edges) - int(np.searchsorted(edges, lead + rng.logistic()))
 
 

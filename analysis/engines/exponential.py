@@ -57,3 +57,13 @@ def log_between_1_and_2(y: float) -> float:
     p = 1 / 15 + q * (1 / 17 + q * (1 / 19 + q / 21))
     p = 1 / 7 + q * (1 / 9 + q * (1 / 11 + q * (1 / 13 + q * p)))
     return _LN_ROOT2 + 2.0 * s * (1.0 + q * (1 / 3 + q * (1 / 5 + q * p)))
+
+
+@compiled(FUSED)
+def log(y: float) -> float:
+    """``log y`` for y from the least normal number on: its exponent, and the logarithm of what is left."""
+    bits = _bits(y)
+    power = (bits >> 52) - 1023
+    # What is left has the exponent 0: a number from 1 to 2.
+    left = _number((bits & 0x000FFFFFFFFFFFFF) | 0x3FF0000000000000)
+    return power * _LN2_HIGH + (power * _LN2_LOW + log_between_1_and_2(left))

@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from analysis.engines import nuts
+from analysis.engines.coordinates import quantities_of
 from analysis.engines.density import packed
 from analysis.engines.form import form_of
 from analysis.model import Problem
 from analysis.results import Draws, FitSettings
 from analysis.softmax import worth_of
-from analysis.zero_sum import zero_sum_basis
 
 
 def sample(
@@ -45,18 +45,6 @@ def question_seed(seed: int, question: str) -> int:
 
 
 def _named(problem: Problem, chains: nuts.Chains) -> Draws:
-    """The sampler's coordinates as the model's quantities (the order is that of ``density``)."""
-    model, n_modes = problem.model, len(problem.counts.modes)
-    ability = chains.position[..., : n_modes - 1] @ zero_sum_basis(n_modes).T
-    rest = iter(np.moveaxis(chains.position[..., n_modes - 1 :], -1, 0))
-    parameters = {}
-    cut = 0.0
-    for name in model.parameter_names:
-        value = next(rest)
-        if name.startswith("cut_"):
-            cut = cut + np.exp(value)
-            value = cut
-        elif name == "subject_sd":
-            value = np.exp(value)
-        parameters[name] = np.ascontiguousarray(value)
-    return Draws(ability, worth_of(ability), parameters, chains.diverging)
+    """The sampler's coordinates as the model's quantities."""
+    found = quantities_of(chains.position, problem.model, problem.counts.modes)
+    return Draws(found.ability, worth_of(found.ability), found.parameters, chains.diverging)

@@ -18,13 +18,14 @@ Papaspiliopoulos, Roberts, Skoeld 2007, "A general framework for the parametriza
 Statistical Science 22, section 3.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from analysis.engines.density import Form, log_density, packed
+from analysis.engines.density import log_density, packed
+from analysis.engines.people import Form
 from analysis.model import Problem
 
 STEEPNESS = 4
@@ -52,10 +53,12 @@ class _Answers:
 
     def pull(self, own: Floats) -> Floats:
         """Slope in everybody's deviations, at these deviations, both of shape (participant, K-1)."""
-        x = np.concatenate([self.at, own.ravel()])
+        x = np.zeros(self.problem.n_dim)
+        end = len(self.at) + own.size
+        x[: len(self.at)], x[len(self.at) : end] = self.at, own.ravel()
         slope = np.empty_like(x)
         log_density(x, slope, self.data)
-        return slope[len(self.at) :].reshape(own.shape) + own
+        return slope[len(self.at) : end].reshape(own.shape) + own
 
     def information(self, towards: Floats) -> Floats:
         """Information times a direction of each participant, both of shape (participant, K-1)."""
@@ -65,7 +68,10 @@ class _Answers:
 def form_of(problem: Problem) -> Form:
     """The form in which a hierarchical problem is sampled well."""
     shape = (len(problem.counts.participants), len(problem.counts.modes) - 1)
-    answers = _Answers(problem, packed(problem), np.append(_group(problem), 0.0))
+    # The spreads stand last, each at 1: nobody has a side or a width of their own in what follows.
+    group = _group(problem)
+    at = np.append(group, np.zeros(problem.n_global - len(group)))
+    answers = _Answers(problem, packed(problem), at)
     pull = answers.pull(np.zeros(shape))
     length = np.linalg.norm(pull, axis=1, keepdims=True)
     ahead = np.divide(pull, length, out=np.zeros(shape), where=length > 0)
@@ -120,7 +126,7 @@ def _centring_of_much(answers: _Answers, variance: float) -> Floats:
 
 def _group(problem: Problem) -> Floats:
     """The most probable position of the group if people were alike, in the order of the density."""
-    alike = Problem(problem.counts.pooled(), replace(problem.model, hierarchical=False))
+    alike = Problem(problem.counts.pooled(), problem.model.alike)
     data = packed(alike)
 
     def uphill(x: Floats) -> tuple[float, Floats]:

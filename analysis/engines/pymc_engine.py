@@ -16,7 +16,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.counts import Counts
-from analysis.model import CUT_GAP_SCALE, LOG_NU_SD, SIDE_EFFECT_SD, SUBJECT_SD_SCALE, Model, Problem
+from analysis.model import (
+    CUT_GAP_SCALE,
+    LAPSE_BETA,
+    LEARNING,
+    LEARNING_SD,
+    LOG_NU_SD,
+    SCALE_SD_SCALE,
+    SIDE_DRIFT_SD,
+    SIDE_EFFECT_SD,
+    SIDE_SD_SCALE,
+    SUBJECT_SD_SCALE,
+    Model,
+    Problem,
+)
 from analysis.results import Draws, FitSettings
 from analysis.softmax import worth_of
 
@@ -102,19 +115,33 @@ def _add_block(block: Block, questions: list[Counts]) -> None:
     question = np.repeat(np.arange(n_questions), [len(counts.mode_a) for counts in questions])
     a = np.concatenate([counts.mode_a for counts in questions])
     b = np.concatenate([counts.mode_b for counts in questions])
+    # A participant answers each question out of an own deviation: nothing is shared between questions.
+    people = np.cumsum([0, *(len(counts.participants) for counts in questions)])
+    person = np.concatenate([c.participant + first for c, first in zip(questions, people, strict=False)])
+    n_people = int(people[-1])
     ability = pm.ZeroSumNormal(prefix + "ability", sigma=model.prior_sd, shape=(n_questions, n_modes))
     eta = ability[question, a] - ability[question, b]
     if model.side_effect:
         eta = eta + pm.Normal(prefix + "side_effect", 0, SIDE_EFFECT_SD, shape=n_questions)[question]
+    if model.position:
+        t, x_a, x_b = np.concatenate([counts.order for counts in questions if counts.order is not None]).T
+        drift = pm.Normal(prefix + "side_drift", 0, SIDE_DRIFT_SD, shape=n_questions)
+        learning = pm.ZeroSumNormal(prefix + "learning", sigma=LEARNING_SD, shape=(n_questions, n_modes))
+        eta = eta + drift[question] * t + learning[question, a] * x_a - learning[question, b] * x_b
     if model.hierarchical:
-        # A participant answers each question out of an own deviation: nothing is shared between questions.
-        people = np.cumsum([0, *(len(counts.participants) for counts in questions)])
-        person = np.concatenate([c.participant + first for c, first in zip(questions, people, strict=False)])
         subject_sd = pm.HalfNormal(prefix + "subject_sd", SUBJECT_SD_SCALE, shape=n_questions)
-        z = pm.ZeroSumNormal(prefix + "z", sigma=1, shape=(int(people[-1]), n_modes))
+        z = pm.ZeroSumNormal(prefix + "z", sigma=1, shape=(n_people, n_modes))
         eta = eta + subject_sd[question] * (z[person, a] - z[person, b])
+    if model.person_side:
+        side_sd = pm.HalfNormal(prefix + "side_sd", SIDE_SD_SCALE, shape=n_questions)
+        eta = eta + side_sd[question] * pm.Normal(prefix + "s", 0, 1, shape=n_people)[person]
+    width = None
+    if model.person_scale:
+        scale_sd = pm.HalfNormal(prefix + "scale_sd", SCALE_SD_SCALE, shape=n_questions)
+        width = scale_sd[question] * pm.Normal(prefix + "w", 0, 1, shape=n_people)[person]
     if model.link == "adjacent":
         log_nu = pm.Normal(prefix + "log_nu", 0, LOG_NU_SD, shape=n_questions)[question]
+        log_nu = log_nu if width is None else log_nu + width
         odds = pt.stack([eta / 2, log_nu, -eta / 2], axis=1)
         log_p = odds - pt.logsumexp(odds, axis=1, keepdims=True)
     else:
@@ -122,8 +149,13 @@ def _add_block(block: Block, questions: list[Counts]) -> None:
         if model.n_gaps:
             gaps = pm.HalfNormal(prefix + "gaps", CUT_GAP_SCALE, shape=(n_questions, model.n_gaps))
             cuts = pm.Deterministic(prefix + "cuts", pt.cumsum(gaps, axis=1))
-        theta = pt.concatenate([cuts[:, ::-1], -cuts], axis=1) if model.n_gaps else pt.zeros((n_questions, 1))
-        log_p = _cumulative_log_p(eta, theta[question])
+        middle = pt.zeros((n_questions, 1 - model.levels % 2))
+        theta = pt.concatenate([cuts[:, ::-1], middle, -cuts], axis=1)
+        own = theta[question] if width is None else theta[question] * pt.exp(width)[:, None]
+        log_p = _cumulative_log_p(eta, own)
+    if model.lapse:
+        lapse = pm.Beta(prefix + "lapse", 1, LAPSE_BETA, shape=n_questions)[question][:, None]
+        log_p = pt.logaddexp(pt.log1p(-lapse) + log_p, pt.log(lapse / model.levels))
     # The multinomial coefficients are constants of the data and stay out, as in the compiled density.
     pm.CustomDist(
         prefix + "responses",
@@ -135,17 +167,16 @@ def _add_block(block: Block, questions: list[Counts]) -> None:
 
 
 def _cumulative_log_p(eta: "TensorVariable", theta: "TensorVariable") -> "TensorVariable":
-    """Log-probabilities from A much to B much, shape (cell, level).
+    """Log-probabilities from A much to B much, shape (cell, level); theta falls along its last axis.
 
-    With ``F_k = log P(eta + noise > theta_k)``, theta falling along the last axis, an inner answer's is
-    ``log(e^F_(k+1) - e^F_k)``, by a difference in logarithms.
+    An inner answer's is ``log(logistic(u) logistic(-l) (1 - e^(l - u)))`` between cut-points l and u, which
+    loses no digits however far ``eta`` lies from them.
     """
     import pytensor.tensor as pt
 
-    exceeds = -pt.softplus(theta - eta[:, None])
-    inner = exceeds[:, 1:] + pt.log1mexp(exceeds[:, :-1] - exceeds[:, 1:])
-    lowest = -pt.softplus(eta[:, None] - theta[:, -1:])
-    return pt.concatenate([exceeds[:, :1], inner, lowest], axis=1)
+    above, below = -pt.softplus(theta - eta[:, None]), -pt.softplus(eta[:, None] - theta)
+    inner = below[:, :-1] + above[:, 1:] + pt.log1mexp(theta[:, 1:] - theta[:, :-1])
+    return pt.concatenate([above[:, :1], inner, below[:, -1:]], axis=1)
 
 
 def sample(
@@ -163,15 +194,22 @@ def sample(
         }
         for row, k in enumerate(block.members):
             ability = drawn["ability"][:, :, row]
+            modes = problems[k].counts.modes
             parameters = {
-                name: drawn["cuts"][:, :, row, int(name[-1]) - 1]
-                if name.startswith("cut_")
-                else drawn[name][:, :, row]
-                for name in block.model.parameter_names
+                name: _drawn(drawn, name, modes)[:, :, row] for name in block.model.parameter_names(modes)
             }
             results[k] = Draws(ability, worth_of(ability), parameters, diverging)
             done(len(results))
     return [results[k] for k in range(len(problems))]
+
+
+def _drawn(drawn: dict[str, "np.ndarray"], name: str, modes: Sequence[str]) -> "np.ndarray":
+    """Draws of a parameter of a block, shape (chain, draw, question)."""
+    if name.startswith("cut_"):
+        return drawn["cuts"][..., int(name.removeprefix("cut_")) - 1]
+    if name.startswith(LEARNING):
+        return drawn["learning"][..., modes.index(name.removeprefix(LEARNING))]
+    return drawn[name]
 
 
 def _sampled(joint: JointModel, settings: FitSettings) -> "az.InferenceData":

@@ -14,6 +14,7 @@ from analysis.figures.style import (
     INK_3,
     LINE,
     LINE_STRONG,
+    PALE,
     PART_HEIGHT_PX,
     SUNKEN,
     SURFACE,
@@ -26,6 +27,7 @@ from analysis.figures.style import (
     write_heading,
     write_text,
 )
+from analysis.level_names import SAME, strength_names
 from data.responses import QuestionScale
 
 if TYPE_CHECKING:
@@ -36,7 +38,8 @@ MOST_PAIRS = 28
 """More pairs than these are not all drawn."""
 STANDING_FOR_ALL = 12
 """So many of the most compared stand for the rest then."""
-_COLOURS = {5: (DATA, DATA_2, SUNKEN, DATA_2, DATA), 3: (DATA_2, SUNKEN, DATA_2), 2: (DATA_2, DATA_2)}
+_STRENGTHS = {1: (DATA_2,), 2: (DATA_2, DATA), 3: (PALE, DATA_2, DATA), 4: (PALE, DATA_2, DATA, INK)}
+"""Colours of the strengths of preference, from the weakest, by how many there are."""
 _ROW_PX, _HEAD_PX, _FOOT_PX = 25, 30, 14
 
 
@@ -48,7 +51,7 @@ def draw_answers(
 ) -> tuple[Drawing, ...]:
     """Stacked shares around the ties: to the left those for the mode named left, to the right for the other.
 
-    Darker is "much more". A mark under a bar, where there is one, is what the fitted model expects
+    Darker is stronger. A mark under a bar, where there is one, is what the fitted model expects
     for the same boundary. All bars share one scale, so that their offsets can be compared.
     """
     with house_style():
@@ -59,6 +62,7 @@ def draw_answers(
         shown = [[p for p in pairs if p in kept] for pairs, kept in zip(shares, shown, strict=True)]
         two = len(questions) > 1 and len(modes) <= 8 and all(width_px(one_line(m)) < 60 for m in modes)
         width = (WIDTH_PX - 36) / 2 if two else WIDTH_PX
+        most = max((question.levels // 2 for question in questions), default=1)
         rows = [shown[k : k + 2] for k in range(0, len(shown), 2)] if two else [[pairs] for pairs in shown]
         heights = [_HEAD_PX + _FOOT_PX + _ROW_PX * max(1, *(len(pairs) for pairs in row)) for row in rows]
         reach = min(1.02, 1.06 * max((_reach(pair) for pairs in shown for pair in pairs), default=1.0))
@@ -72,9 +76,11 @@ def draw_answers(
                 for c, pairs in enumerate(rows[r]):
                     k = r * (2 if two else 1) + c
                     names.append(k)
-                    _draw_question(figure, questions[k], pairs, modes, c * (width + 36), top, width, reach)
+                    _draw_question(
+                        figure, questions[k], pairs, modes, c * (width + 36), top, width, reach, most
+                    )
                 top += heights[r]
-            _draw_key(figure, top + 16, {questions[k].levels for k in names}, shown)
+            _draw_key(figure, top + 16, {questions[k].levels for k in names}, most, shown)
             name = "answers" if len(parts) == 1 else f"answers_{number + 1}"
             alt = _alt([questions[k] for k in names], [shown[k] for k in names])
             drawings.append(finish(figure, name, alt, tag))
@@ -102,6 +108,7 @@ def _draw_question(
     top: float,
     width: float,
     reach: float,
+    most: int,
 ) -> None:
     write_heading(figure, left, top + 16, question, width)
     if not pairs:
@@ -125,7 +132,7 @@ def _draw_question(
         write_text(figure, left + side + room + 8, y, fitted(names[pair.mode_j], side - 8), color=INK)
         write_text(figure, left + width, y, f"{pair.n}", ha="right", fontsize=8.4, color=INK_2)
         if pair.n:
-            _draw_bar(axes, row, [c / pair.n for c in pair.counts])
+            _draw_bar(axes, row, [c / pair.n for c in pair.counts], most)
             if pair.expected:
                 _draw_expected(axes, row, list(pair.expected))
 
@@ -143,9 +150,15 @@ def _reach(pair: PairShares) -> float:
     return max(max(-_left_edge(shares), 1 + _left_edge(shares)) for shares in drawn)
 
 
-def _draw_bar(axes: "Axes", row: int, shares: list[float]) -> None:
+def _colours(levels: int, most: int) -> tuple[str, ...]:
+    """Colours of the answers, where the longest scale of the figure has so many strengths of preference."""
+    by_strength = _STRENGTHS[most][: levels // 2]
+    return (*reversed(by_strength), *(SUNKEN,) * (levels % 2), *by_strength)
+
+
+def _draw_bar(axes: "Axes", row: int, shares: list[float], most: int) -> None:
     start = _left_edge(shares)
-    for share, colour in zip(shares, _COLOURS[len(shares)], strict=True):
+    for share, colour in zip(shares, _colours(len(shares), most), strict=True):
         if share > 0:
             edge = LINE_STRONG if colour == SUNKEN else SURFACE
             axes.barh(
@@ -168,13 +181,13 @@ def _draw_expected(axes: "Axes", row: int, shares: list[float]) -> None:
     axes.vlines(edges, row + 0.74, row + 0.90, color=INK, linewidth=1.0, zorder=4)
 
 
-def _draw_key(figure: "Figure", y: float, levels: set[int], shown: Sequence[Sequence[PairShares]]) -> None:
-    entries = []
-    if 5 in levels:
-        entries.append((DATA, "much more"))
-    entries.append((DATA_2, "more"))
-    if levels & {3, 5}:
-        entries.append((SUNKEN, "about the same"))
+def _draw_key(
+    figure: "Figure", y: float, levels: set[int], most: int, shown: Sequence[Sequence[PairShares]]
+) -> None:
+    strengths = list(zip(_STRENGTHS[most], strength_names(most), strict=True))
+    entries = strengths[: max(levels) // 2][::-1]
+    if any(n % 2 for n in levels):
+        entries.append((SUNKEN, SAME))
     x = 0.0
     for colour, text in entries:
         swatch = place_axes(figure, x, y - 9, 14, 10)
@@ -205,4 +218,4 @@ def _alt(questions: Sequence[QuestionScale], shown: Sequence[Sequence[PairShares
             for p in pairs[:12]
         ]
         said.append(f"{one_line(question.name)}: {'; '.join(rows)}.")
-    return "Answers by pair, from much more the first to much more the second. " + " ".join(said)
+    return "Answers by pair, from most for the first to most for the second. " + " ".join(said)

@@ -25,11 +25,19 @@ if TYPE_CHECKING:
 
 PANELS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("Side effect", ("side_effect",)),
-    ("Cut-points", ("cut_1", "cut_2")),
+    ("Side drift", ("side_drift",)),
+    ("Cut-points", ("cut_1", "cut_2", "cut_3", "cut_4")),
     ("Ties", ("log_nu",)),
+    ("Careless", ("lapse",)),
     ("Between people", ("subject_sd",)),
+    ("Own sides", ("side_sd",)),
+    ("Own widths", ("scale_sd",)),
 )
 """The panels with the parameters they show; a panel no question has is left out."""
+_APART = 0.18
+"""Rows between the cut-points of a question that has more than two."""
+_MARKERS = {"cut_2": "s", "cut_3": "D", "cut_4": "^"}
+"""Of cut-points beyond the first, filled."""
 
 
 def draw_parameters(questions: Sequence[QuestionFit], tag: str = "") -> Drawing | None:
@@ -44,7 +52,7 @@ def draw_parameters(questions: Sequence[QuestionFit], tag: str = "") -> Drawing 
         pitch = 24
         longest = max(width_px(one_line(q.question.name)) for q in shown)
         left = min(190.0, max(44.0, 16 + longest))
-        gap = 30
+        gap = 30 if len(panels) < 6 else 18
         width = (WIDTH_PX - left - gap * (len(panels) - 1) - 8) / len(panels)
         figure = new_figure(30 + pitch * len(shown) + 42)
         for row, question in enumerate(shown):
@@ -53,7 +61,7 @@ def draw_parameters(questions: Sequence[QuestionFit], tag: str = "") -> Drawing 
         write_text(figure, left - 14, 30 + pitch * len(shown) + 17, "logit", ha="right", fontsize=8.4)
         for k, (title, names) in enumerate(panels):
             x = left + k * (width + gap)
-            write_text(figure, x, 16, title, fontsize=9, color=INK, weight="bold")
+            write_text(figure, x, 16, title, fontsize=9 if len(panels) < 6 else 8, color=INK, weight="bold")
             axes = place_axes(figure, x, 30, width, pitch * len(shown))
             axes.set_ylim(len(shown), 0)
             axes.set_yticks([])
@@ -66,23 +74,25 @@ def draw_parameters(questions: Sequence[QuestionFit], tag: str = "") -> Drawing 
             axes.set_axisbelow(True)
             axes.axvline(0, color=INK_3, linewidth=0.9, linestyle=(0, (1.5, 2.2)))
             for row, question in enumerate(shown):
-                for quantity in question.parameters:
-                    if quantity.name in names:
-                        _draw_quantity(axes, row + 0.5, quantity)
+                own = [quantity for quantity in question.parameters if quantity.name in names]
+                # The intervals of more than two cut-points would cover each other.
+                step = _APART if len(own) > 2 else 0.0
+                for place, quantity in enumerate(own):
+                    _draw_quantity(axes, row + 0.5 + step * (place - (len(own) - 1) / 2), quantity)
         return finish(figure, "parameters", _alt(shown), tag)
 
 
 def _draw_quantity(axes: "Axes", y: float, quantity: Quantity) -> None:
     axes.hlines(y, quantity.hdi_low, quantity.hdi_high, color=DATA, linewidth=1.15)
-    second = quantity.name == "cut_2"
+    marker = _MARKERS.get(quantity.name, "o")
     axes.plot(
         [quantity.mean],
         [y],
         linestyle="none",
-        marker="s" if second else "o",
+        marker=marker,
         markersize=6,
         zorder=5,
-        markerfacecolor=DATA if second else SURFACE,
+        markerfacecolor=SURFACE if marker == "o" else DATA,
         markeredgecolor=DATA,
         markeredgewidth=1.6,
     )

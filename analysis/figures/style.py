@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 INK, INK_2, INK_3 = "#1D2930", "#4C5B65", "#66747D"
 LINE, LINE_STRONG = "#DDE1DE", "#B9C1C2"
 DATA, DATA_2, DATA_TINT, SUNKEN, SURFACE = "#2F5566", "#7C95A1", "#DCE5E9", "#F1F2EF", "#FFFFFF"
+PALE = "#B9C9D1"
 
 WIDTH_PX = 666
 """Width of every figure: the text width of the A4 page, at 96 px to the inch."""

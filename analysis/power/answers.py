@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from analysis.model import thresholds
 from analysis.power.scenario import Scenario
 from data.answers import SCALES
 from data.responses import QuestionScale, ResponseTable
@@ -20,7 +21,7 @@ def draw_answers(
     """
     modes, ability = study.mode_names, scenario.ability
     scale = SCALES[scenario.levels]
-    edges = np.array([*(-c for c in reversed(scenario.cuts)), *(scenario.cuts or (0.0,))])
+    edges = thresholds(np.array(scenario.cuts), scenario.levels)
     rows = []
     for person in range(1, participants + 1):
         deviation = rng.normal(size=len(modes))

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import expit, ndtr
 
 from analysis.equivalence import EQUIVALENT_BELOW
-from analysis.model import SIDE_EFFECT_SD
+from analysis.model import SIDE_EFFECT_SD, thresholds
 from analysis.power.plan import Plan, mode_pairs
 from analysis.power.scenario import Conclusion, Scenario
 from analysis.results import FitSettings
@@ -157,8 +157,7 @@ def answers_of_two(
 
 def _answer_information(lead: FloatArray, scenario: Scenario) -> FloatArray:
     """Fisher information of one answer on its lead, over people, shape (answers,)."""
-    cuts = scenario.cuts
-    edges = np.array([*(-c for c in reversed(cuts)), *(cuts or (0.0,))])
+    edges = thresholds(np.array(scenario.cuts), scenario.levels)
     own = lead[:, None] + np.sqrt(2.0) * scenario.subject_sd * _NODES
     below = expit(edges - own[..., None])
     ends = np.zeros((*own.shape, 1))

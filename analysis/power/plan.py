@@ -6,7 +6,7 @@ import numpy as np
 
 from analysis.power.scenario import BEST, Conclusion, Scenario
 from data.answers import SCALES
-from data.errors import InputError
+from data.errors import InputError, one_of
 from data.study import Study
 
 MOST_ANSWERS = 20_000
@@ -95,7 +95,7 @@ def _check_people(study: Study, scenario: Scenario) -> None:
     if max(worth) / min(worth) > 1e6:
         raise InputError("worth: the largest must be at most a million times the smallest")
     if scenario.levels not in SCALES:
-        raise InputError(f"levels: {scenario.levels} is not one of: 2, 3, 5")
+        raise one_of("levels", scenario.levels, tuple(str(n) for n in SCALES))
     needed, cuts = (scenario.levels - 1) // 2, scenario.cuts
     if len(cuts) != needed or list(cuts) != sorted(set(cuts)) or not all(0 < c < np.inf for c in cuts):
         raise InputError(

@@ -13,20 +13,26 @@ from scipy.special import expit, ndtr
 from analysis.equivalence import EQUIVALENT_BELOW
 from analysis.figures.labels import LIKELY
 from analysis.results import QuestionFit
+from data.answers import SCALES
 from data.errors import InputError
 
 Kind = Literal["best", "order", "pair", "equal", "equal pair"]
 Verdict = Literal["right", "wrong", "open", "unranked"]
 
 LEVELS = 3
-CUTS: dict[int, tuple[float, ...]] = {2: (), 3: (0.5,), 5: (0.5, 1.5)}
-"""Cut-points that are assumed where none are given [logit]. Untuned."""
+_FIRST_CUT = 0.5
+"""Half of the width of "about the same", or where there are no ties that of the weakest preference [logit].
+Untuned."""
+_GAP = 1.0
+"""From one cut-point to the next [logit]. Untuned."""
+CUTS: dict[int, tuple[float, ...]] = {
+    levels: tuple(_FIRST_CUT + _GAP * k for k in range((levels - 1) // 2)) for levels in SCALES
+}
+"""Cut-points that are assumed where none are given [logit]."""
 SUBJECT_SD = 0.7
 """How much people are assumed to differ where nothing is said [logit]. Untuned."""
 SIDE_EFFECT = 0.1
 """Assumed preference for what is shown as A [logit]. Untuned."""
-_MUCH = 1.0
-"""Gap from cut_1 to cut_2 where only the ties are given [logit]. Untuned."""
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(61)
 _WIDEST_CUT = 60.0
 
@@ -40,9 +46,9 @@ class Scenario:
     worth : tuple of float
         Planted worth of each mode of the study, in its order; any positive numbers, their ratios count.
     levels : int
-        Levels of the question's scale: 2, 3 or 5.
+        Levels of the question's scale: 2 to 9.
     cuts : tuple of float
-        Cut-points of the cumulative model [logit], increasing: none, one or two.
+        Cut-points of the cumulative model above 0 [logit], increasing.
     subject_sd : float
         Spread of the participants' own abilities [logit].
     side_effect : float
@@ -80,7 +86,9 @@ class Scenario:
     def sentence(self) -> str:
         """The assumptions in a line."""
         worth = " : ".join(f"{w:g}" for w in self.worth)
-        cuts = f" with cut-points {' and '.join(f'{c:.3g}' for c in self.cuts)}" if self.cuts else ""
+        cuts = f" with cut-points {', '.join(f'{c:.3g}' for c in self.cuts)}" if self.cuts else ""
+        if len(self.cuts) == 2:
+            cuts = cuts.replace(",", " and")
         return (
             f"worths {worth}, {self.levels} levels{cuts}, people differ with sd {self.subject_sd:g}, "
             f"side effect {self.side_effect:g}"
@@ -92,25 +100,27 @@ def tie_share(pairs: Sequence[tuple[int, int]], scenario: Scenario) -> float:
 
     A person's own lead of one mode over another has the variance ``2 subject_sd^2`` about that of the group.
     """
-    return _share_within(pairs, scenario, scenario.cuts[0]) if scenario.cuts else 0.0
+    return _share_within(pairs, scenario, scenario.cuts[0]) if scenario.levels % 2 else 0.0
 
 
 def cuts_for_ties(pairs: Sequence[tuple[int, int]], scenario: Scenario, share: float) -> tuple[float, ...]:
     """The cut-points with which these people say "about the same" in this share of their answers.
 
-    With five levels "much" begins 1 logit beyond.
+    Stronger answers begin 1 logit beyond, and another logit beyond that.
 
     Raises
     ------
     InputError
         If the scale has no such answer, or the share is not above 0 and below 1.
     """
-    if scenario.levels == 2:
-        raise InputError("ties: a scale of 2 levels has none; valid with 3 or 5 levels")
+    if scenario.levels % 2 == 0:
+        raise InputError(
+            f"ties: a scale of {scenario.levels} levels has none; valid with 3, 5, 7 or 9 levels"
+        )
     if not 0.0 < share < 0.99:
         raise InputError(f"ties: {share:g} is no share above 0 and below 0.99")
     cut = float(brentq(lambda c: _share_within(pairs, scenario, c) - share, 0.0, _WIDEST_CUT))
-    return (cut,) if scenario.levels == 3 else (cut, cut + _MUCH)
+    return tuple(cut + _GAP * k for k in range((scenario.levels - 1) // 2))
 
 
 def _share_within(pairs: Sequence[tuple[int, int]], scenario: Scenario, cut: float) -> float:

@@ -287,11 +287,15 @@ def _parameters(fit: Fit, look: CloserLook, tag: str) -> Section | None:
         said.append("Side effect: above 0, what is shown as A is favoured.")
     if "cut_1" in names:
         about.append("ties")
+        said.append(_cut_points_in_words(fit))
+    if "lapse" in names:
+        about.append("careless answers")
+        said.append("Careless: share of the answers that do not depend on the modes, not in logits.")
+    if "side_drift" in names:
+        about.append("position")
         said.append(
-            "Cut-points: how large a difference must feel to be called “more” (circle) and “much more” "
-            "(square)."
-            if "cut_2" in names
-            else "Cut-points: how large a difference must feel to be noticed."
+            "Side drift: how much the side effect changes from a participant's first comparison to the last. "
+            "What each mode gained by being used stands in the table."
         )
     if "log_nu" in names:
         about.append("ties")
@@ -299,6 +303,10 @@ def _parameters(fit: Fit, look: CloserLook, tag: str) -> Section | None:
     if "subject_sd" in names:
         about.append("people")
         said.append("Between people: spread of the participants' own abilities around the group's.")
+    if "side_sd" in names:
+        said.append("Own sides: spread of the participants' own side effects.")
+    if "scale_sd" in names:
+        said.append("Own widths: spread of the logarithm of how wide each participant uses the scale.")
     caption = f"{' '.join(said)} On the logit scale, with 94 % credible intervals.{_ERRORS}"
     return Section(
         f"{listed(about).capitalize()}",
@@ -307,6 +315,23 @@ def _parameters(fit: Fit, look: CloserLook, tag: str) -> Section | None:
         caption,
         pages.parameters_table(fit, look.errors),
         "appended",
+    )
+
+
+def _cut_points_in_words(fit: Fit) -> str:
+    levels = {q.question.levels for q in fit.questions if q.parameters}
+    most = max(levels)
+    if most <= 3:
+        return "Cut-points: how large a difference must feel to be noticed."
+    if most > 5:
+        return (
+            "Cut-points: how large a difference must feel for each stronger answer, in their order circle, "
+            "square, diamond and triangle."
+        )
+    if most == 4:
+        return "Cut-point: how large a difference must feel to be called “much more”."
+    return (
+        "Cut-points: how large a difference must feel to be called “more” (circle) and “much more” (square)."
     )
 
 

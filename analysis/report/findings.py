@@ -100,7 +100,7 @@ def chances_above(question: QuestionFit, mode: str) -> dict[str, float]:
 def _finding(question: QuestionFit, label: str) -> Finding:
     answers = sum(p.n for p in question.pairs)
     tied = sum(p.ties for p in question.pairs)
-    ties = tied / answers if answers and question.question.levels > 2 else float("nan")
+    ties = tied / answers if answers and question.question.levels % 2 else float("nan")
     if not question.ranked:
         return Finding(question, "", float("nan"), "", float("nan"), ties, "not ranked", label)
     first = max(question.modes, key=lambda m: m.p_best)

@@ -8,33 +8,24 @@ from markupsafe import Markup
 
 from analysis.closer_look import CloserLook
 from analysis.diagnostics import ESS_ABOVE, RHAT_BELOW, ess_in_words, rhat_in_words
-from analysis.equivalence import EQUIVALENT_BELOW, EQUIVALENT_CHANCE
-from analysis.event_rate import LOG_RATE_SD, MEDIAN_RATE, SPREAD_SCALE, UNKNOWN_MIN
 from analysis.figures.labels import LIKELY, isolated
 from analysis.fit import LONGER
-from analysis.persons import points_of
+from analysis.model import model_of
 from analysis.refits import Refits
 from analysis.report.findings import listed
 from analysis.report.line_methods import methods_of_lines
-from analysis.results import Fit
+from analysis.report.section_methods import methods_of_refits, methods_of_sections, methods_of_stuck
+from analysis.results import Fit, FitSettings
 from analysis.straight_lining import StraightLining
 from analysis.stuck import StuckRate
+from analysis.wording import wording
 from data.study import Study
 
 _QUANTILE = 1.8808
 """Of the normal distribution: 94 % lie within so many standard deviations."""
-_SYMBOLS = {
-    "ability": "a",
-    "side_effect": "b",
-    "cut_1": "c₁",
-    "cut_2": "c₂",
-    "log_nu": "log ν",
-    "subject_sd": "τ",
-    "z": "z",
-    "worth": "w",
-    "theta": "θ",
-}
-"""What the formulas call the parameters that the fit's priors are named by."""
+
+
+_NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
 
 @dataclass(frozen=True)
@@ -63,7 +54,12 @@ def methods(
     versions : mapping of str to str
         Of the software behind the numbers, by name.
     """
-    more = [_closer(look), methods_of_lines(lines), _stuck(rates), _refits(refitted)]
+    more = [
+        methods_of_sections(look),
+        methods_of_lines(lines),
+        methods_of_stuck(rates),
+        methods_of_refits(refitted),
+    ]
     return (
         *_model(fit),
         Paragraph(_priors(fit)),
@@ -98,6 +94,8 @@ def _model(fit: Fit) -> list[Paragraph]:
             "z are the participant's own deviations from the group, which add up to 0 over the modes, and τ "
             "is their standard deviation, so that several answers of one person do not count as independent"
         )
+    terms += _option_terms(fit.settings)
+    explained += _options_explained(fit.settings)
     missing = []
     if not has_side:
         missing.append("There is no side effect in this model.")
@@ -117,11 +115,66 @@ def _model(fit: Fit) -> list[Paragraph]:
         ),
         _formula(" + ".join(terms)),
         *_answers(fit, levels, " ".join([where.strip(), *missing]).strip()),
+        *_careless(fit.settings),
+    ]
+
+
+def _option_terms(settings: FitSettings) -> list[str]:
+    """What the options add to the lead."""
+    terms = []
+    if settings.person_side:
+        terms.append("<i>σs</i>")
+    if settings.position:
+        terms += [
+            "<i>dt</i>",
+            "<i>g</i><sub>A</sub><i>x</i><sub>A</sub> − <i>g</i><sub>B</sub><i>x</i><sub>B</sub>",
+        ]
+    return terms
+
+
+def _options_explained(settings: FitSettings) -> list[str]:
+    explained = []
+    if settings.person_side:
+        explained.append(
+            "s is the participant's own side, normal with standard deviation 1, so that σ is the spread of "
+            "side effects between participants"
+        )
+    if settings.position:
+        explained.append(
+            "t is the place of the comparison among the participant's comparisons of the question, in the "
+            "order in which they were made (of a store) or in which the rows stand (of a file), from −0.5 "
+            "for the first to 0.5 for the last of whoever made most, and d is how much the side effect "
+            "changes over them; x is how often the participant had had the mode before, scaled alike, and g "
+            "is what the mode gains by it, which adds up to 0 over the modes: the abilities are those in the "
+            "middle"
+        )
+    return explained
+
+
+def _careless(settings: FitSettings) -> list[Paragraph]:
+    """How answers may be careless, after the sentences on how a lead becomes an answer."""
+    if not settings.lapse:
+        return []
+    return [
+        Paragraph(
+            "An answer may be careless (a lapse: Wichmann & Hill 2001), and then every level is as likely:"
+        ),
+        _formula("<i>P</i>(answer) = (1 − <i>λ</i>) <i>P</i>(answer | <i>η</i>) + <i>λ</i> / levels"),
+        Paragraph(
+            "The prior on λ has the mean that surveys find of careless participants, 10 % (Meade & Craig "
+            "2012). Worths and abilities are those of answers that are given with care."
+        ),
     ]
 
 
 def _answers(fit: Fit, levels: set[int], before: str) -> list[Paragraph]:
     """How a lead becomes an answer."""
+    width = (
+        "Each participant uses the scale in a width of their own (Johnson 2003): their {what} by e to the "
+        "power of ωv, with v normal of standard deviation 1."
+        if fit.settings.person_scale and levels != {2}
+        else ""
+    )
     if fit.settings.link == "adjacent":
         return [
             Paragraph(f"{before} The odds of the three answers are those of Davidson (1970):".strip()),
@@ -129,19 +182,14 @@ def _answers(fit: Fit, levels: set[int], before: str) -> list[Paragraph]:
                 "<i>P</i>(A) : <i>P</i>(about the same) : <i>P</i>(B) = e<sup><i>η</i>/2</sup> : <i>ν</i> : "
                 "e<sup>−<i>η</i>/2</sup>"
             ),
+            *([Paragraph(width.format(what="ν is multiplied"))] if width else []),
         ]
     if levels == {2}:
         return [
             Paragraph(f"{before} The chance that A is preferred is".strip()),
             _formula("<i>P</i>(A) = 1 / (1 + e<sup>−<i>η</i></sup>)"),
         ]
-    points = []
-    if 5 in levels:
-        points.append("(−c₂, −c₁, c₁, c₂) with five levels (Agresti 1992)")
-    if 3 in levels:
-        points.append("(−c₁, c₁) with three levels, which is the model of Rao & Kupper (1967)")
-    if 2 in levels:
-        points.append("0 with two levels, which is Bradley-Terry itself")
+    points = [_points(n) for n in sorted(levels, reverse=True)]
     return [
         Paragraph(
             f"{before} Answers are ordered from B to A and cut from one latent logistic scale:".strip()
@@ -152,8 +200,21 @@ def _answers(fit: Fit, levels: set[int], before: str) -> list[Paragraph]:
         Paragraph(
             f"The cut-points θ lie symmetrically, so that A and B weigh the same: {listed(points)}. The "
             "larger a cut-point, the more answers fall into the middle."
+            + (f" {width}" if width else "").format(what="cut-points are multiplied")
         ),
     ]
+
+
+def _points(levels: int) -> str:
+    """The cut-points of a scale, and whose model that is."""
+    above = [wording(f"cut_{k + 1}").symbol for k in range((levels - 1) // 2)]
+    below = [f"−{symbol}" for symbol in reversed(above)]
+    every = ", ".join([*below, *(["0"] if levels % 2 == 0 else []), *above])
+    if levels == 2:
+        return "0 with two levels, which is Bradley-Terry itself"
+    if levels == 3:
+        return f"({every}) with three levels, which is the model of Rao & Kupper (1967)"
+    return f"({every}) with {_NUMBERS[levels]} levels (Agresti 1992)"
 
 
 def _gibbs_model(start: str, levels: set[int]) -> list[Paragraph]:
@@ -161,7 +222,8 @@ def _gibbs_model(start: str, levels: set[int]) -> list[Paragraph]:
         "Answers of all participants count as independent (pooled), and there is no side effect. The "
         "posterior was sampled as in Caron & Doucet (2012)."
     )
-    if levels == {2}:
+    much = " Every stronger answer was taken as the weakest preference." if max(levels) > 3 else ""
+    if not any(n % 2 for n in levels):
         formula = (
             "<i>P</i>(<i>i</i> over <i>j</i>) = <i>w<sub>i</sub></i> / (<i>w<sub>i</sub></i> + "
             "<i>w<sub>j</sub></i>)"
@@ -169,7 +231,7 @@ def _gibbs_model(start: str, levels: set[int]) -> list[Paragraph]:
         return [
             Paragraph(f"{start}. Every mode has a worth w:"),
             _formula(formula),
-            Paragraph(pooled),
+            Paragraph(pooled + much),
         ]
     formula = (
         "<i>P</i>(<i>i</i> over <i>j</i>) = <i>w<sub>i</sub></i> / (<i>w<sub>i</sub></i> + "
@@ -177,7 +239,6 @@ def _gibbs_model(start: str, levels: set[int]) -> list[Paragraph]:
         "<i>w<sub>i</sub>w<sub>j</sub></i> / ((<i>w<sub>i</sub></i> + <i>θw<sub>j</sub></i>) "
         "(<i>θw<sub>i</sub></i> + <i>w<sub>j</sub></i>))"
     )
-    much = " An answer “much more” was taken as “more”." if 5 in levels else ""
     return [
         Paragraph(
             f"{start} with the ties of Rao & Kupper (1967). Every mode has a worth w, and ties have θ ≥ 1:"
@@ -190,7 +251,7 @@ def _gibbs_model(start: str, levels: set[int]) -> list[Paragraph]:
 def _priors(fit: Fit) -> str:
     """The priors and what they mean."""
     stated = [
-        f"{_SYMBOLS[name]} {'' if prior.startswith('flat') else '~ '}{_in_symbols(prior)}"
+        f"{wording(name).symbol} {'' if prior.startswith('flat') else '~ '}{_in_symbols(prior)}"
         for name, prior in fit.priors.items()
     ]
     if fit.settings.engine == "gibbs":
@@ -198,9 +259,10 @@ def _priors(fit: Fit) -> str:
             f"Priors: {'; '.join(stated)}. The Dirichlet is flat over all worths that add up to 1; abilities "
             "are the logarithms of the worths, less their mean."
         )
+    but = " but the Beta" if fit.settings.lapse else ""
     reach = _QUANTILE * sqrt(2.0) * fit.settings.prior_sd
     return (
-        f"Priors: {'; '.join(stated)}. The last number of each is its standard deviation or scale; a "
+        f"Priors: {'; '.join(stated)}. The last number of each{but} is its standard deviation or scale; a "
         "ZeroSumNormal is a normal distribution whose values are made to add up to 0. So before any answer "
         f"94 % of the differences between two modes lie within {reach:.1f} logits, odds of {_odds(reach)} to "
         "1. The worth of a mode is e to the power of its ability, divided by the sum of these over all modes."
@@ -208,9 +270,8 @@ def _priors(fit: Fit) -> str:
 
 
 def _in_symbols(prior: str) -> str:
-    for name, symbol in _SYMBOLS.items():
-        prior = prior.replace(f"{name} +", f"{symbol} +")
-    return prior
+    name, plus, rest = prior.partition(" + ")
+    return f"{wording(name).symbol}{plus}{rest}" if plus else prior
 
 
 def _odds(logits: float) -> str:
@@ -243,10 +304,13 @@ def _acceptance(fit: Fit) -> float:
     """Acceptance rate that NUTS adapted to; the engine fast lowers it in many dimensions."""
     if fit.settings.engine != "fast":
         return fit.settings.target_accept
-    sizes = [
-        len(q.parameters) + (len(q.mode_names) - 1) * (1 + (q.n_participants if q.hierarchical else 0))
-        for q in fit.questions
-    ]
+    sizes = []
+    for q in fit.questions:
+        model = model_of(fit.settings, q.question.levels, q.hierarchical or fit.settings.position)
+        free = len(q.mode_names) - 1
+        own = (free + model.n_own) * q.n_participants if q.hierarchical else 0
+        # What modes gain by use adds up to 0.
+        sizes.append(free + len(q.parameters) - model.position + own)
     return fit.settings.acceptance(max(sizes, default=0))
 
 
@@ -281,127 +345,3 @@ def _sampling(fit: Fit, versions: Mapping[str, str]) -> str:
         f"{said} In this report the largest R-hat is {rhat_in_words(fit.rhat_max)} and the smallest "
         f"effective sample size {ess_in_words(fit.ess_min)}{diverged}."
     )
-
-
-def _closer(look: CloserLook | None) -> str:
-    if look is None:
-        return ""
-    said = []
-    if look.equivalences:
-        said.append(
-            "Two modes count as practically equal where their abilities differ by at most "
-            f"{EQUIVALENT_BELOW:.2f} logits, a preference of {100 * EQUIVALENT_CHANCE:.0f} in 100 where one "
-            "has to choose; the posterior probability of that region is given (Kruschke 2018)."
-        )
-    people = max((len({p.participant for p in a.people}) for a in look.agreements), default=0)
-    if people:
-        said.append(
-            "Participants' own abilities were drawn given draws of the group's parameters: one of "
-            f"{points_of(people)} points spread about a participant's own posterior, by their importance "
-            "weights."
-        )
-    if look.checks.checks:
-        said.append(
-            "Predictive checks (Gelman et al. 1996) compared the answers with those of new participants who "
-            "have the same schedule (Bayarri & Castellanos 2007), drawn at one posterior draw of the "
-            "parameters (Johnson 2007). Every quantity was cleared of the scores of the model's own "
-            "parameters (Robins et al. 2000): shares of answers, and the scores along what the model leaves "
-            "out (Rao 1948). The p of the most extreme of all checks is that of Westfall & Young (1993)."
-        )
-    if any(c.participant == "all" for c in look.consistencies):
-        said.append(
-            "Circular triads, the coefficient of consistence zeta and the coefficient of agreement u follow "
-            "Kendall & Babington Smith (1940), a tie counting as half a preference for either; the chance "
-            "of u under coin tosses is exact, by convolution over the pairs, ties as they are."
-        )
-    if look.associations:
-        said.append(
-            "Metrics were averaged over the laps of a comparison, then over each participant's comparisons; "
-            "the interval of a mode's mean is Student's over these means of participants, on the log scale "
-            "for what cannot be negative. Answers were correlated with metrics within participants, both as "
-            "ranks about 0 less the participant's own mean, with an interval from Fisher's z by leaving out "
-            "participants one by one (Miller 1974). All questions and metrics were tested together on the "
-            "participants' own correlations by flipping the signs of whole participants and stepping down "
-            "by the largest left (Romano & Wolf 2005), at 5 % for the list."
-        )
-    return " ".join(said)
-
-
-def _stuck(rates: Sequence[StuckRate]) -> str:
-    if not rates:
-        return ""
-    minutes = [rate.per_minute is not None for rate in rates]
-    over_people = any(rate.between is not None for rate in rates)
-    sentences = [
-        "The share of a mode's comparisons in which the robot got stuck has a uniform prior, with "
-        "comparisons independent: it speaks of these people and comparisons."
-    ]
-    if over_people or any(minutes):
-        sentences.append(
-            "In a comparison with t minutes under a mode the robot gets stuck at least once with probability "
-            f"1 − exp(−rate · t). The logarithm of the rate has a normal prior around log {MEDIAN_RATE:g} a "
-            f"minute with standard deviation {LOG_RATE_SD:g}."
-        )
-    if over_people:
-        sentences.append(
-            "For people in general, each participant has a rate of their own, log-normal around the median "
-            "person's, and the standard deviation of its logarithm has a half-normal prior of scale "
-            f"{SPREAD_SCALE:g}; reported are the median person's rate and the mean share of a new person's "
-            "comparisons, each as long as the mode's median comparison. For these people and comparisons, "
-            "all rates per minute are the same."
-        )
-        if not all(minutes):
-            sentences.append(
-                "A comparison of unknown length counts as the median of the known ones, or as "
-                f"{UNKNOWN_MIN:g} minutes."
-            )
-    if over_people or any(minutes):
-        sentences.append(
-            "These posteriors are sums over grids (Trefethen & Weideman 2014), and highest-density intervals "
-            "are the shortest on the scale that is printed."
-        )
-    if len(rates) > 1 and any(rate.stuck for rate in rates):
-        sentences.append(
-            "Two modes are compared, for these people and comparisons, by their posteriors and by two-sided "
-            "exact tests: Fisher's (Fisher 1935), and one conditional on how often each participant got "
-            "stuck (Mehta et al. 1985)."
-        )
-        if over_people:
-            sentences.append(
-                "For people in general they are compared by the posteriors over people, the modes modelled "
-                "apart, and by the two-sided exact test that exchanges the modes within people (Basu 1980)."
-            )
-        sentences.append("Nothing is corrected for several pairs.")
-    return " ".join(sentences)
-
-
-def _refits(refitted: Refits | None) -> str:
-    if refitted is None:
-        return ""
-    said = []
-    if refitted.scores:
-        said.append(
-            "Models were compared by the log predictive density of participants left out, a participant's "
-            "own deviations integrated out (Merkle et al. 2019): from draws weighted by Pareto-smoothed "
-            "importance sampling (Vehtari et al. 2024), or, where its k-hat exceeds 0.7, from a fit without "
-            "the participant, which has to converge as the report's own has; standard errors are over "
-            "participants (Vehtari et al. 2017)."
-        )
-    if refitted.shifts:
-        said.append(
-            "Sensitivity to the priors was checked with half and twice the scale of the prior on abilities, "
-            "fitted again, and on the differences between people, by importance weights without a new fit."
-        )
-    if refitted.effects:
-        said.append(
-            "Abilities were regressed on one metric at a time, standardised over the modes, with a residual "
-            "for each mode, on the normal approximation of what the answers say of the abilities; slopes "
-            "were told apart from 0 by their posterior, corrected for their number (Holm 1979); a slope is "
-            "an association."
-        )
-    if refitted.moderation.differences:
-        said.append(
-            "Groups of people were compared by fitting the report's model to each group by itself, with "
-            "the same priors and nothing shared."
-        )
-    return " ".join(said)

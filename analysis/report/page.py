@@ -18,6 +18,7 @@ from analysis.report.findings import Finding, Phrase
 from analysis.report.methods import Paragraph
 from analysis.report.references import Reference
 from analysis.results import Fit, QuestionFit
+from analysis.wording import wording
 
 MOST_ROWS = 400
 """A longer table stays in its CSV file: the page says which."""
@@ -28,13 +29,6 @@ _SHOWN_DRAWINGS = 2
 _PRINTED_ROWS = 40
 _NAMED_IN_A_REASON = 6
 _BELOW_THE_TITLE_PX = 640
-_PLAIN_NAMES = {
-    "side_effect": "side effect",
-    "cut_1": "cut-point 1",
-    "cut_2": "cut-point 2",
-    "log_nu": "log nu",
-    "subject_sd": "subject sd",
-}
 
 
 @dataclass(frozen=True)
@@ -313,7 +307,7 @@ def parameters_table(fit: Fit, errors: Sequence[MonteCarloError]) -> Table:
     rows = tuple(
         (
             one_line(q.question.name),
-            _PLAIN_NAMES.get(p.name, p.name),
+            one_line(wording(p.name).table),
             _mean(_signed(f"{p.mean:.3f}"), of.get((q.question.name, "", "", p.name)), 3),
             f"{p.sd:.3f}",
             _signed(f"{p.hdi_low:.3f} to {p.hdi_high:.3f}"),
@@ -327,20 +321,24 @@ def parameters_table(fit: Fit, errors: Sequence[MonteCarloError]) -> Table:
 
 def answers_table(fit: Fit, shares: Sequence[Sequence[PairShares]]) -> Table:
     """Counts of every answer, pair by pair; scales of different length are set around the ties."""
+    most = max(2, *(question.question.levels // 2 for question in fit.questions))
     rows = []
     for question, pairs in zip(fit.questions, shares, strict=True):
         for p in pairs:
             cells = [f"{n:,}" for n in p.counts]
-            spread = {
-                2: ["", cells[0], "", cells[-1], ""],
-                3: ["", *cells, ""],
-                5: cells,
-            }[len(cells)]
+            half = len(cells) // 2
+            outside = [""] * (most - half)
+            middle = cells[half : half + len(cells) % 2] or [""]
+            spread = [*outside, *cells[:half], *middle, *cells[-half:], *outside]
             rows.append((one_line(question.question.name), one_line(p.mode_i), one_line(p.mode_j), *spread))
-    columns = ("Question", "Mode i", "Mode j", "i much", "i", "Same", "j", "j much")
-    has_much = any(question.question.levels == 5 for question in fit.questions)
+    much = ["much", ""] if most == 2 else [">" * (k + 1) for k in reversed(range(most))]
+    strengths = [f"{{}} {name}".strip() for name in much]
+    for_i, for_j = ([name.format(side) for name in strengths] for side in ("i", "j"))
+    columns = ("Question", "Mode i", "Mode j", *for_i, "Same", *reversed(for_j))
+    has_much = any(question.question.levels > 3 for question in fit.questions)
     source = "pairwise.csv and strength.csv" if has_much else "pairwise.csv"
-    return Table(columns, (False, False, False, *([True] * 5)), tuple(rows), source).filled
+    is_number = (False, False, False, *([True] * (2 * most + 1)))
+    return Table(columns, is_number, tuple(rows), source).filled
 
 
 def diagnostics_table(fit: Fit) -> Table:

@@ -111,19 +111,24 @@ def strength_section(look: CloserLook) -> Section | None:
         "Question", "Mode i", "Mode j", "Answers", "Much i", "Much j", "Strong", "New: much i", "New: much j",
     )  # fmt: skip
     strongest = _strongest(look.strengths)
-    words = (_strong_answers(look.strengths, bool(strongest)), *strongest)
+    has_longer = any(len(pair.counts) > 5 for pairs in look.shares for pair in pairs)
+    words = (_strong_answers(look.strengths, bool(strongest), has_longer), *strongest)
     table = Table(columns, (False, False, False, *([True] * 6)), rows, "strength.csv").filled
     return Section("Strength of preference", (), "", "", table, words=words)
 
 
-def _strong_answers(found: Sequence[Strength], is_expected: bool) -> str:
+def _strong_answers(found: Sequence[Strength], is_expected: bool, has_longer: bool) -> str:
     said = []
+    longer = (
+        "; every arrow longer than one sign (A>>B, A>>>B and so on) counts as “much”" if has_longer else ""
+    )
     for name in list(dict.fromkeys(s.question for s in found))[:_MOST_SAID]:
         own = [s for s in found if s.question == name]
         much, n = sum(s.much_i + s.much_j for s in own), sum(s.n for s in own)
         said.append(f"{much:,} of {n:,} on {isolated(name)}")
     return (
-        f"Scales of five levels keep “much more” apart from “more”. “Much” was said in {listed(said)}. In "
+        f"Scales of four levels and more keep “much more” apart from “more”{longer}. “Much” was said in "
+        f"{listed(said)}. In "
         "the table, “strong” is the share of “much” among the answers that preferred either mode"
         + (
             ", and “new” the chance that someone new says “much” for a mode, with its 94 % credible interval."

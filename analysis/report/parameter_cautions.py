@@ -3,7 +3,15 @@
 from collections.abc import Sequence
 
 from analysis.figures.labels import isolated
-from analysis.model import CUT_GAP_SCALE, LOG_NU_SD, SIDE_EFFECT_SD, SUBJECT_SD_SCALE
+from analysis.model import (
+    CUT_GAP_SCALE,
+    LOG_NU_SD,
+    SCALE_SD_SCALE,
+    SIDE_DRIFT_SD,
+    SIDE_EFFECT_SD,
+    SIDE_SD_SCALE,
+    SUBJECT_SD_SCALE,
+)
 from analysis.report.findings import listed
 from analysis.results import Fit, QuestionFit
 
@@ -15,6 +23,9 @@ _SCALES = {
     "side_effect": ("side effect", SIDE_EFFECT_SD),
     "log_nu": ("log nu, for the share of ties,", LOG_NU_SD),
     "subject_sd": ("spread between people", SUBJECT_SD_SCALE),
+    "side_drift": ("drift of the side effect", SIDE_DRIFT_SD),
+    "side_sd": ("spread of side effects between people", SIDE_SD_SCALE),
+    "scale_sd": ("spread of widths of the scale between people", SCALE_SD_SCALE),
 }
 
 

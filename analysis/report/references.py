@@ -103,6 +103,12 @@ SOURCES = (
     ),
     Reference(
         "Johnson",
+        2003,
+        "Johnson, T. R. (2003). On the use of heterogeneous thresholds ordinal regression models to account "
+        "for individual differences in response style. Psychometrika 68(4), 563–583.",
+    ),
+    Reference(
+        "Johnson",
         2005,
         "Johnson, J. A. (2005). Ascertaining the validity of individual protocols from web-based personality "
         "inventories. Journal of Research in Personality 39(1), 103–129.",
@@ -124,6 +130,12 @@ SOURCES = (
         2018,
         "Kruschke, J. K. (2018). Rejecting or accepting parameter values in Bayesian estimation. Advances in "
         "Methods and Practices in Psychological Science 1(2), 270–280.",
+    ),
+    Reference(
+        "Meade & Craig",
+        2012,
+        "Meade, A. W. and Craig, S. B. (2012). Identifying careless responses in survey data. Psychological "
+        "Methods 17(3), 437–455.",
     ),
     Reference(
         "Mehta et al.",
@@ -198,6 +210,12 @@ SOURCES = (
         2024,
         "Vehtari, A., Simpson, D., Gelman, A., Yao, Y. and Gabry, J. (2024). Pareto smoothed importance "
         "sampling. Journal of Machine Learning Research 25(72), 1–58.",
+    ),
+    Reference(
+        "Wichmann & Hill",
+        2001,
+        "Wichmann, F. A. and Hill, N. J. (2001). The psychometric function: I. Fitting, sampling, and "
+        "goodness of fit. Perception & Psychophysics 63(8), 1293–1313.",
     ),
     Reference(
         "Westfall & Young",

@@ -4,7 +4,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.options import CORES, JobsOption, OutOption, SeedOption
+from app.cli.options import (
+    CORES,
+    JobsOption,
+    LapseOption,
+    OutOption,
+    PersonScaleOption,
+    PersonSideOption,
+    PositionOption,
+    SeedOption,
+)
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -14,7 +23,7 @@ if TYPE_CHECKING:
 
 def calibrate(
     out: OutOption,
-    levels: Annotated[int, typer.Option("--levels", metavar="2|3|5", help="Levels of the scale.")] = 3,
+    levels: Annotated[int, typer.Option("--levels", metavar="2..9", help="Levels of the scale.")] = 3,
     link: Annotated[
         str,
         typer.Option("--link", metavar="cumulative|adjacent", help="How a lead becomes an answer."),
@@ -25,6 +34,10 @@ def calibrate(
     no_side_effect: Annotated[
         bool, typer.Option("--no-side-effect", help="Nobody prefers a side, nor does the model know of it.")
     ] = False,
+    lapse: LapseOption = False,
+    person_side: PersonSideOption = False,
+    person_scale: PersonScaleOption = False,
+    position: PositionOption = False,
     participants: Annotated[
         int, typer.Option("--participants", metavar="N", help="People in each simulated study.")
     ] = 7,
@@ -57,7 +70,16 @@ def calibrate(
     links: dict[str, Link] = {name: name for name in get_args(Link)}
     if link not in links:
         raise one_of("--link", link, tuple(links))
-    model = world_of(FitSettings(pooled=pooled, side_effect=not no_side_effect, link=links[link]), levels)
+    settings = FitSettings(
+        pooled=pooled,
+        side_effect=not no_side_effect,
+        link=links[link],
+        lapse=lapse,
+        person_side=person_side,
+        person_scale=person_scale,
+        position=position,
+    )
+    model = world_of(settings, levels)
     design = Design(participants, repetitions, modes)
     check_replicates(replicates)
     check_folder(out, SUMMARY)

@@ -36,6 +36,21 @@ JobsOption = Annotated[
 SimulatedOption = Annotated[
     bool, typer.Option("--include-simulated", help="Use answers of simulated participants too.")
 ]
+LapseOption = Annotated[
+    bool, typer.Option("--lapse", help="Some answers are careless: every level is then as likely.")
+]
+PersonSideOption = Annotated[
+    bool, typer.Option("--person-side", help="Each participant has a side effect of their own.")
+]
+PersonScaleOption = Annotated[
+    bool, typer.Option("--person-scale", help="Each participant uses the scale in a width of their own.")
+]
+PositionOption = Annotated[
+    bool,
+    typer.Option(
+        "--position", help="The side effect may drift with the comparisons, and modes may be learnt."
+    ),
+]
 SeedOption = Annotated[int, typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of all that is random.")]
 
 

@@ -40,7 +40,7 @@ def power(
     ] = "",
     levels: Annotated[
         int | None,
-        typer.Option("--levels", metavar="2|3|5", help="Levels of the scale. Default: the study's fewest."),
+        typer.Option("--levels", metavar="2..9", help="Levels of the scale. Default: the study's fewest."),
     ] = None,
     ties: Annotated[
         float | None,

@@ -6,7 +6,16 @@ from typing import Annotated
 
 import typer
 
-from app.cli.options import OutOption, SimulatedOption, StoredStudyOption, StoreOption
+from app.cli.options import (
+    LapseOption,
+    OutOption,
+    PersonScaleOption,
+    PersonSideOption,
+    PositionOption,
+    SimulatedOption,
+    StoredStudyOption,
+    StoreOption,
+)
 from data.errors import InputError
 
 
@@ -41,6 +50,18 @@ def report(
         float, typer.Option("--prior-sd", metavar="X", help="Sigma of the ability prior alone.")
     ] = 1.0,
     link: Annotated[Link, typer.Option(help="adjacent: three-level questions only.")] = Link.cumulative,
+    lapse: LapseOption = False,
+    person_side: PersonSideOption = False,
+    person_scale: PersonScaleOption = False,
+    position: PositionOption = False,
+    levels: Annotated[
+        int | None,
+        typer.Option(
+            "--levels",
+            metavar="2..9",
+            help="Levels of every scale, where no study says it. Default: inferred from the answers.",
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, max=2**31 - 1, help="Seed of the sampler.")] = 2017,
     full: Annotated[
         bool,
@@ -85,6 +106,8 @@ def report(
 
     elbowroom report --responses answers.csv --study carmichael2017 --out report
 
+    elbowroom report --responses answers.csv --levels 7 --lapse --out report
+
     elbowroom report --store study.sqlite --max-latency-ms 100 --max-skipped 1 --out report
     """
     from analysis.lag import LagLimits
@@ -92,6 +115,10 @@ def report(
 
     if store is not None and responses is not None:
         raise InputError("give --store or --responses, not both")
+    if levels is not None and (responses is None or study is not None):
+        raise InputError(
+            "--levels: a study says how many levels its questions have; valid with --responses alone"
+        )
     if not 0.01 <= prior_sd <= 100:
         raise InputError(f"--prior-sd: {prior_sd:g} is not between 0.01 and 100")
     if max_latency_ms is not None and not 0 < max_latency_ms <= 60_000:
@@ -110,6 +137,11 @@ def report(
             side_effect=not no_side_effect,
             prior_sd=prior_sd,
             link=link.value,
+            lapse=lapse,
+            person_side=person_side,
+            person_scale=person_scale,
+            position=position,
+            levels=levels,
             seed=seed,
             lag_limits=LagLimits(max_latency_ms, max_skipped),
             full=full,

@@ -67,7 +67,7 @@ def _default(study: Study) -> Wish:
         participants=_written(plan.participants),
         repetitions=_written(plan.repetitions),
         levels=plan.scenario.levels,
-        ties=ties if plan.scenario.levels > 2 else None,
+        ties=ties if plan.scenario.levels % 2 else None,
     )
 
 
@@ -92,10 +92,8 @@ def _wish(study: Study, before: Wish) -> Wish:
     first = st.columns([0.5, 0.25, 0.25])
     names = ", ".join(study.mode_names)
     worth = first[0].text_input(f"Worth of {names}, in this order", key="planning-worth")
-    levels = first[1].selectbox("Answers to choose from", (2, 3, 5), key="planning-levels")
-    ties = first[2].number_input(
-        "“About the same” [%]", 1, 90, key="planning-ties", disabled=levels == min(SCALES)
-    )
+    levels = first[1].selectbox("Answers to choose from", tuple(SCALES), key="planning-levels")
+    ties = first[2].number_input("“About the same” [%]", 1, 90, key="planning-ties", disabled=levels % 2 == 0)
     second = st.columns(4)
     spread = second[0].number_input("People differ, sd [logit]", 0.0, 10.0, step=0.1, key="planning-spread")
     side = second[1].number_input("Pull to side A [logit]", -10.0, 10.0, step=0.1, key="planning-side")
@@ -118,7 +116,7 @@ def _wish(study: Study, before: Wish) -> Wish:
         participants=participants,
         repetitions=repetitions,
         levels=levels,
-        ties=ties / 100 if levels != min(SCALES) else None,
+        ties=ties / 100 if levels % 2 else None,
         subject_sd=spread,
         side_effect=side,
         conclusion=conclusion,

@@ -44,7 +44,7 @@ class Truth:
     ability: tuple[float, ...] = (0.6, -0.8, 0.2)
     side_effect: float = 0.3
     subject_sd: float = 0.7
-    cuts: tuple[float, ...] = (0.5, 1.2)
+    cuts: tuple[float, ...] = (0.5, 1.2, 1.8, 2.5)
 
 
 def simulate(
@@ -53,9 +53,8 @@ def simulate(
     """Answers drawn from the model by a latent logistic variable: no formula of the package is used."""
     rng = np.random.default_rng(seed)
     ability, n = np.array(truth.ability), len(truth.ability)
-    edges = {2: [0.0], 3: [-truth.cuts[0], truth.cuts[0]], 5: [-truth.cuts[1], -truth.cuts[0], *truth.cuts]}[
-        levels
-    ]
+    cuts = truth.cuts[: (levels - 1) // 2]
+    edges = [*(-cut for cut in reversed(cuts)), *([] if levels % 2 else [0.0]), *cuts]
     rows = []
     for s in range(participants):
         z = rng.normal(size=n)

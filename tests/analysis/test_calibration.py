@@ -149,7 +149,7 @@ def test_a_rank_counts_thinned_draws_below_and_shares_out_equals() -> None:
     assert max(equal) > 90
 
 
-@pytest.mark.parametrize("levels", [2, 3, 5])
+@pytest.mark.parametrize("levels", [2, 3, 4, 5])
 @pytest.mark.parametrize("link", ["cumulative", "adjacent"])
 def test_answers_have_the_probabilities_of_the_model(levels, link) -> None:
     if link == "adjacent" and levels != 3:
@@ -260,10 +260,11 @@ def test_the_command_prints_a_verdict_and_writes_what_it_counted(tmp_path: Path,
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--levels", "4"], "levels: 4 is not one of: 2, 3, 5"),
+        (["--levels", "10"], "levels: 10 is not one of: 2, 3, 4, 5, 6, 7, 8, 9"),
         (["--link", "probit"], "--link: 'probit' is not one of: cumulative, adjacent"),
         (["--link", "adjacent", "--levels", "5"], "adjacent needs a scale of 3 levels, not 5"),
         (["--participants", "0"], "participants: 0 is fewer than 1"),
+        (["--pooled", "--person-side"], "person_side: this option needs participants, and they are pooled"),
         (["--modes", "1"], "modes: 1 is fewer than 2"),
         (["--modes", "9"], "modes: 9 is more than 8"),
         (["--participants", "9000"], "more than 20000"),

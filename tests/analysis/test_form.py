@@ -8,8 +8,9 @@ import pytest
 from scipy.optimize import minimize
 
 from analysis.counts import count_responses
-from analysis.engines.density import Form, log_density, packed
+from analysis.engines.density import log_density, packed
 from analysis.engines.form import form_of
+from analysis.engines.people import Form
 from analysis.fit import fit
 from analysis.model import Model, Problem
 from analysis.results import FitSettings

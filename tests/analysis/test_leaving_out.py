@@ -175,6 +175,10 @@ def test_links_are_compared_on_three_levels_alone(simulated):
         "as reported",
         "without a side effect",
         "people alike",
+        "with careless answers",
+        "with own side effects",
+        "with own widths of the scale",
+        "with position and learning",
     }
 
 

@@ -98,16 +98,14 @@ def test_three_modes_have_the_known_maximum(wins_table):
     np.testing.assert_allclose(worth, [0.31997, 0.13658, 0.54345], atol=6e-6)
 
 
-@pytest.mark.parametrize(
-    ("levels", "link"), [(2, "cumulative"), (3, "cumulative"), (5, "cumulative"), (3, "adjacent")]
-)
+@pytest.mark.parametrize(("levels", "link"), [*((n, "cumulative") for n in range(2, 10)), (3, "adjacent")])
 @pytest.mark.parametrize("has_priors", [True, False])
 def test_slopes_and_curvature_are_those_of_finite_differences(simulated, levels, link, has_priors):
     table = simulated(levels)
     cells = count_responses(table, table.questions[0]).pooled()
     model = Model(levels, link, False, True, 1.0)
     design = _design(cells, model)
-    x = np.random.default_rng(1).normal(size=2 + len(model.parameter_names))
+    x = np.random.default_rng(1).normal(size=2 + len(model.parameter_names(("M1", "M2", "M3"))))
 
     def at(shift):
         return _surface(x + shift, cells, model, design, has_priors)

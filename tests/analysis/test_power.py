@@ -175,7 +175,7 @@ def test_the_result_does_not_depend_on_the_number_of_processes(tmp_path) -> None
         ({"scenario": Scenario((1, 2, -3))}, "positive number"),
         ({"scenario": Scenario((1, 2, float("nan")))}, "positive number"),
         ({"scenario": Scenario((1, 2, 1e9))}, "a million times"),
-        ({"scenario": Scenario((1, 2, 3), levels=4)}, "4 is not one of: 2, 3, 5"),
+        ({"scenario": Scenario((1, 2, 3), levels=10)}, "10 is not one of: 2, 3, 4, 5, 6, 7, 8, 9"),
         ({"scenario": Scenario((1, 2, 3), levels=5)}, "5 levels need 2 increasing positive numbers, not 0.5"),
         ({"scenario": Scenario((1, 2, 3), levels=5, cuts=(1.0, 0.5))}, "increasing"),
         ({"scenario": Scenario((1, 2, 3), subject_sd=float("nan"))}, "subject_sd: nan is not between"),
