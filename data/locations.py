@@ -66,11 +66,18 @@ def check_folder(out: Path, marker: str | None = None) -> None:
 def atomic_write(path: Path, content: bytes) -> None:
     """Write a file so that its name only ever leads to the whole of it, synced to the disk.
 
+    A link stays a link: the file that it leads to is written.
+
     Raises
     ------
+    InputError
+        If the name is that of a device or a pipe, which a file would take the place of.
     ElbowroomError
         If it cannot be written; the name is then as it was before.
     """
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise InputError(f"{path}: is a device or a pipe, not a file")
+    path = Path(os.path.realpath(path))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".partial-", delete=False) as partial:

@@ -1,6 +1,7 @@
 """Files and folders come into being whole or not at all."""
 
 import errno
+import os
 from pathlib import Path
 
 import pytest
@@ -141,3 +142,20 @@ def test_the_default_store_of_an_installation_is_the_users(tmp_path, monkeypatch
     monkeypatch.setattr("data.locations.CHECKOUT", tmp_path)
     assert default_store().name == "elbowroom.sqlite"
     assert Path.home() in default_store().parents
+
+
+def test_a_file_never_takes_the_place_of_a_pipe(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(InputError, match="is a device or a pipe, not a file"):
+        atomic_write(pipe, b"new")
+    assert pipe.is_fifo()
+    assert list(tmp_path.iterdir()) == [pipe]
+
+
+def test_a_link_stays_and_the_file_that_it_leads_to_is_written(tmp_path):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "folder" / "file")
+    atomic_write(tmp_path / "link", b"new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "folder" / "file").read_bytes() == b"new"
