@@ -167,9 +167,7 @@ def convert(
     preset = find_form(name)
     if content.get("form", name) != name:
         raise InputError(f"{map_}: is for the form {content['form']}, not for {name}")
-    if out is None:
-        raise InputError("say where to write the responses: --out FILE.csv")
-    _check_places(files, [place for place in (out, write_map) if place])
+    _check_places([*files, *([map_] if map_ else [])], [place for place in (out, write_map) if place])
     base = merged(preset.defaults, content, str(map_)) if map_ else preset.defaults
     options = ConvertOptions(
         participant=participant,
@@ -196,6 +194,11 @@ def convert(
     mapping = with_options(preset, base, options)
     conversion = convert_files(files, preset, mapping)
     text = response_csv(conversion)
+    if out is None:
+        raise InputError(
+            f"{conversion.table.path}: all is told, and {counted(len(conversion.responses), 'response')} can "
+            "be written; say where by --out FILE.csv"
+        )
     if write_map:
         atomic_write(write_map, map_text(mapping, preset.defaults).encode())
     atomic_write(out, text.encode())
@@ -211,10 +214,12 @@ def _printable(line: str) -> str:
 
 
 def _check_places(files: list[Path], places: list[Path]) -> None:
-    """Refuse to write over a file that is read, or over a folder."""
+    """Refuse to write over a file that is read, over a folder, or two results into one file."""
+    if len({place.absolute() for place in places}) < len(places):
+        raise InputError(f"{places[0]}: --out and --write-map are the same file")
     for place in places:
         if any(place.exists() and file.exists() and place.samefile(file) for file in files):
-            raise InputError(f"{place}: is the file to be converted; write somewhere else")
+            raise InputError(f"{place}: is a file to be read; write somewhere else")
         if place.is_dir():
             raise InputError(f"{place}: is a folder, not a file")
 

@@ -114,14 +114,16 @@ class Account:
             f"{mapping.participant}: participant" if mapping.participant else "participant: nobody is named"
         ]
         words: dict[str, Counter[tuple[str, str]]] = {}
+        questions: dict[str, dict[str, None]] = {}
         for preference in preferences:
             words.setdefault(preference.column, Counter())[preference.word, preference.response] += 1
+            questions.setdefault(preference.column, {})[preference.question] = None
         for item in self._items:
-            meanings = words.get(item.source.name, Counter()).most_common(MOST_SHOWN)
-            read = ", ".join(
-                f"{plain_or_quoted(word)} = {answer} ({n})" for (word, answer), n in sorted(meanings)
-            )
-            lines.append(f"{plain_or_quoted(item.source.name)}: {self._item(item)}; {read or 'no response'}")
+            name = item.source.name
+            meanings = words.get(name, Counter()).most_common(MOST_SHOWN)
+            read = ", ".join(f"{_meaning(item, *both)} ({n})" for both, n in sorted(meanings))
+            how = self._item(item, tuple(questions.get(name, ())))
+            lines.append(f"{plain_or_quoted(name)}: {how}; {read or 'no response'}")
         for ranking in self._rankings:
             columns = listed(column.name for column in ranking.columns)
             modes = listed(ranking.modes)
@@ -142,9 +144,11 @@ class Account:
             lines.append(f"not used: {listed(rest)}")
         return lines
 
-    def _item(self, item: Item) -> str:
-        """How an item is read: its question and its sides."""
-        question = f"column {item.question.name}" if item.question else item.spec.question
+    def _item(self, item: Item, questions: tuple[str, ...]) -> str:
+        """How an item is read: its question or those that its cells name, and its sides."""
+        question = listed(questions or (item.spec.question,))
+        if item.question:
+            question = f"the question in column {plain_or_quoted(item.question.name)}"
         if item.left and item.right:
             sides = f"left in {plain_or_quoted(item.left.name)}, right in {plain_or_quoted(item.right.name)}"
         elif item.pair:
@@ -188,10 +192,19 @@ class Account:
         return lines
 
 
+def _meaning(item: Item, word: str, answer: str) -> str:
+    """A word of the file and what it means; the columns alone say it where there is no word."""
+    if item.spec.always is not None:
+        return f"{answer} in every row"
+    return f"{plain_or_quoted(word)} = {answer}"
+
+
 def _mode_line(preferences: list[Preference]) -> str:
     """The modes, each with its number of responses."""
     modes = Counter(mode for one in preferences for mode in (one.mode_a, one.mode_b))
-    return f"modes: {listed(f'{mode} ({n})' for mode, n in sorted(modes.items()))}"
+    shown = [f"{listed([mode])} ({n})" for mode, n in sorted(modes.items())]
+    rest = f" and {len(shown) - MOST_SHOWN} more" if len(shown) > MOST_SHOWN else ""
+    return f"modes: {', '.join(shown[:MOST_SHOWN])}{rest}"
 
 
 def _tie_lines(preferences: list[Preference]) -> list[str]:

@@ -9,13 +9,13 @@ from data.convert.account import Account
 from data.convert.form import Form
 from data.convert.items import Item, resolve_items
 from data.convert.json_records import ARRAY
-from data.convert.map import ConversionMap
+from data.convert.map import LEAVE_OUT, ConversionMap
 from data.convert.missing import MissingMeanings
 from data.convert.rankings import ResolvedRanking, read_ranking, resolve_rankings
 from data.convert.reading import FILE, read_tables
 from data.convert.reading_answers import MissingMeaningError, NoAnswer, Preference, RowProblem, read_item
 from data.convert.rows import Reason, check_rows_are_chosen, filled_down, resolve_rules
-from data.convert.table import Column, Row, Table, counted
+from data.convert.table import Column, Row, Table, counted, listed
 from data.errors import InputError
 from data.labels import plain_or_quoted
 
@@ -62,10 +62,14 @@ def convert_files(paths: Sequence[Path], form: Form, mapping: ConversionMap) -> 
         raise InputError(f"{table.path}: {form.refusal}")
     if not mapping.answers and not mapping.rankings:
         raise InputError(
-            f"{table.path}: nothing says which column holds the answers; tell it by --answer COLUMN; "
-            f"columns: {table.labels}"
+            f"{table.path}: nothing says which column holds the answers; "
+            f"tell it by --answer COLUMN{_or_ranking(form)}; columns: {table.labels}"
         )
     return _Reader(table, form, mapping).conversion()
+
+
+def _or_ranking(form: Form) -> str:
+    return ", or a ranking's by --ranking COLUMNS" if form.ranking_cells else ""
 
 
 @dataclass
@@ -94,6 +98,7 @@ class _Reader:
         self.missing = MissingMeanings(self.table, kept, self.items)
         self._is_one_file = len({row.path for row in self.table.rows}) <= 1
         self._file_place = self.table.names.index(FILE) if FILE in self.table.names else -1
+        self._asked_away: set[str] = set()
         self._rows: dict[tuple[str | None, ...], Row] = {}
         self._keys: dict[tuple[str | None, str, str], Row] = {}
 
@@ -124,6 +129,7 @@ class _Reader:
                 except InputError as error:
                     problem = problem or error
         self.missing.check()
+        self._check_lines_to_leave_out()
         if problem is not None:
             raise problem
         if self.mapping.each_pair_once:
@@ -153,8 +159,26 @@ class _Reader:
     def _is_asked_away(self, row: Row) -> bool:
         if not self.mapping.leave_out:
             return False
-        places = (str(row.line), f"{row.path}:{row.line}", f"{Path(row.path).name}:{row.line}")
-        return any(place in self.mapping.leave_out for place in places)
+        inside = row.path.removeprefix(f"{self.table.path}/")
+        places = {f"{path}:{row.line}" for path in (row.path, inside, Path(row.path).name)}
+        if self._is_one_file:
+            places.add(str(row.line))
+        asked = places.intersection(self.mapping.leave_out)
+        self._asked_away |= asked
+        return bool(asked)
+
+    def _check_lines_to_leave_out(self) -> None:
+        """Refuse a bare line number among several files, and say which lines are not there."""
+        asked = [place for place in self.mapping.leave_out if place not in LEAVE_OUT]
+        numbers = [place for place in asked if place.isdigit()]
+        if numbers and not self._is_one_file:
+            raise InputError(
+                f"{self.table.path}: --leave-out {numbers[0]}: nothing says in which of the files; "
+                f"write --leave-out FILE:{numbers[0]}"
+            )
+        absent = [place for place in asked if place not in self._asked_away]
+        if absent:
+            self.account.note(f"not in the rows that count: --leave-out {listed(absent)}")
 
     def _responses(self, row: Row) -> list[ConvertedResponse]:
         preferences: list[Preference] = []
@@ -166,8 +190,13 @@ class _Reader:
             except MissingMeaningError as error:
                 self.missing.add(error)
             except RowProblem as problem:
-                if problem.kind not in self.mapping.leave_out:
+                if not problem.kind:
                     raise
+                if problem.kind not in self.mapping.leave_out:
+                    raise InputError(
+                        f"{problem}: leave such rows out by --leave-out {problem.kind}, or this one by "
+                        f"--leave-out {self._place(row)}"
+                    ) from None
                 missing.append(NoAnswer("", f"{problem.kind}, asked to be left out"))
         person = self.participant.text(row) if self.participant else None
         who = f" ({person})" if person else ""
@@ -213,11 +242,15 @@ class _Reader:
             if first is not row:
                 raise InputError(
                     f"{row.where}: {plain_or_quoted(person)} answered {preference.question} of {comparison} "
-                    f"already in {first.where}: leave one out, such as --leave-out {row.line}"
+                    f"already in {first.where}: leave one out, such as --leave-out {self._place(row)}"
                 )
         kept = tuple(column.text(row) or "" for column in self.kept_columns)
         count = self.count.text(row) if self.count else None
         return ConvertedResponse(person, preference, count, kept, row)
+
+    def _place(self, row: Row) -> str:
+        """A row's place as ``--leave-out`` takes it."""
+        return str(row.line) if self._is_one_file else f"{Path(row.path).name}:{row.line}"
 
     def _each_pair_once(self, responses: list[ConvertedResponse]) -> list[ConvertedResponse]:
         """One response a pair where a pair stands twice, mirrored; both must say the same."""

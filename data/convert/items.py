@@ -59,7 +59,22 @@ def resolve_items(table: Table, mapping: ConversionMap) -> list[Item]:
         items = [_named(item) for item in items]
     for item in items:
         _check_sides(table, item)
+    _check_columns_count_once(table, items)
     return sorted(items, key=lambda item: item.source.place)
+
+
+def _check_columns_count_once(table: Table, items: list[Item]) -> None:
+    """Refuse two items that read the same answer to the same question."""
+    seen: set[tuple[object, ...]] = set()
+    for item in items:
+        sides = (item.left, item.right, item.pair, item.modes)
+        key = (item.source.place, item.source.keys, item.spec.question, item.question, sides)
+        if key in seen:
+            raise InputError(
+                f"{table.path}: {plain_or_quoted(item.source.name)}: is told twice as a column of answers to "
+                f"{plain_or_quoted(item.spec.question)}: each answer would count twice"
+            )
+        seen.add(key)
 
 
 def _named(item: Item) -> Item:

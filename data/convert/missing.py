@@ -39,7 +39,7 @@ class MissingMeanings:
             if what == "word" and all(is_number(value) for value in values):
                 ask += _OR_NUMBERS
             others = [value for value in self._seen(set(columns)) if value not in values]
-            beside = f" (beside {listed(others)})" if others else ""
+            beside = f" (other values there: {listed(others)})" if others else ""
             names = listed(columns)
             raise InputError(f"{self._table.path}: {names}: {listed(values)}{beside}: {ask}")
 

@@ -53,6 +53,9 @@ def with_options(form: Form, base: ConversionMap, options: ConvertOptions) -> Co
     InputError
         One line with the option and how it is written.
     """
+    for option, name in (("--participant", options.participant), ("--question", options.question)):
+        if name is not None and not name.strip():
+            raise InputError(f"{option}: is empty")
     content: dict[str, object] = base.model_dump(mode="json", exclude_none=True)
     content["form"] = form.name
     if options.participant is not None:
@@ -67,7 +70,7 @@ def with_options(form: Form, base: ConversionMap, options: ConvertOptions) -> Co
         **{k: _two("--pair", k, v) for k, v in _equations("--pair", options.pair).items()},
     }
     content["rows"] = [*_list(content["rows"]), *_rules(options)]
-    content["keep"] = [*base.keep, *options.keep]
+    content["keep"] = list(dict.fromkeys([*base.keep, *options.keep]))
     content["leave_out"] = [*base.leave_out, *options.leave_out]
     _check_leave_out(options.leave_out)
     if options.levels is not None or options.positive is not None:

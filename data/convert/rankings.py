@@ -31,7 +31,14 @@ class ResolvedRanking:
 
 def resolve_rankings(table: Table, mapping: ConversionMap) -> list[ResolvedRanking]:
     """The rankings of a map as they are in the file."""
-    return [_resolved(table, ranking, mapping) for ranking in mapping.rankings]
+    rankings = [_resolved(table, ranking, mapping) for ranking in mapping.rankings]
+    seen: set[tuple[str, frozenset[int]]] = set()
+    for ranking in rankings:
+        key = (ranking.spec.question, frozenset(column.place for column in ranking.columns))
+        if key in seen:
+            raise InputError(f"{table.path}: {listed(ranking.spec.columns)}: this ranking is told twice")
+        seen.add(key)
+    return rankings
 
 
 def _resolved(table: Table, ranking: Ranking, mapping: ConversionMap) -> ResolvedRanking:
@@ -79,7 +86,7 @@ def read_ranking(
     )
     for mode in ranking.modes:
         if mode not in places:
-            yield NoAnswer(ranking.name, f"{mode} without a rank: in no pair")
+            yield NoAnswer(ranking.name, f"{plain_or_quoted(mode)} has no rank and is in no pair")
     for better, worse in combinations(sorted(places, key=lambda mode: places[mode]), 2):
         answer: Answer = "A>B" if places[better] < places[worse] else "A=B"
         word = f"{better} before {worse}" if answer == "A>B" else f"{better} and {worse} equal"

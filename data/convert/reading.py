@@ -8,11 +8,9 @@ from data.convert.archive import archive_names, archive_records, is_results_arch
 from data.convert.delimited import Record, records
 from data.convert.json_records import json_records, json_table
 from data.convert.spreadsheet import spreadsheet_records
-from data.convert.table import Row, Table, counted, plain
+from data.convert.table import FILE, Row, Table, counted, plain
 from data.errors import InputError
 
-FILE = "@file"
-"""Column with the name of the file that a row stands in."""
 _SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 
 
@@ -87,6 +85,9 @@ def read_head(path: Path, sheet: str = "") -> Table:
 
 def read_tables(paths: Sequence[Path], layout: Layout, sheet: str = "") -> Table:
     """Several files of one form as one table; a column that a file lacks is empty there."""
+    for number, path in enumerate(paths):
+        if any(path == earlier or _is_same(path, earlier) for earlier in paths[:number]):
+            raise InputError(f"{path}: the file is named twice: each answer would count twice")
     tables = [read_table(path, layout, sheet) for path in paths]
     if len(tables) == 1:
         return tables[0]
@@ -106,6 +107,13 @@ def read_tables(paths: Sequence[Path], layout: Layout, sheet: str = "") -> Table
             joined.append(Row(row.path, row.line, cells))
     paths_text = " and ".join(str(path) for path in paths)
     return Table(paths_text, names, tuple(joined), tuple(note for table in tables for note in table.notes))
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    try:
+        return path.samefile(other)
+    except OSError:
+        return False
 
 
 def _with_file(path: Path, table: Table) -> Table:

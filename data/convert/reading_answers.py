@@ -88,11 +88,7 @@ def read_item(item: Item, row: Row, mapping: ConversionMap) -> Iterator[Preferen
             continue
         left, right = _modes(item, row, mapping)
         if left == right:
-            raise RowProblem(
-                f"{row.where}, {column}: {quoted(left)} against itself: "
-                f"leave such rows out by --leave-out same-mode, or this one by --leave-out {row.line}",
-                "same-mode",
-            )
+            raise RowProblem(f"{row.where}, {column}: {quoted(left)} against itself", "same-mode")
         answer: Answer
         if meaning == CHOSEN:
             chosen = _chosen(item, row, left, right, mapping)
@@ -181,8 +177,7 @@ def _level(column: Column, row: Row, word: str, mapping: ConversionMap) -> Answe
     half = levels // 2
     zero = "" if levels % 2 else " without 0"
     raise RowProblem(
-        f"{row.where}, {column.name}: {word!r} is not one of the {levels} levels -{half} to {half}{zero}: "
-        f"leave such rows out by --leave-out off-scale, or this one by --leave-out {row.line}",
+        f"{row.where}, {column.name}: {word!r} is not one of the {levels} levels -{half} to {half}{zero}",
         "off-scale",
     )
 

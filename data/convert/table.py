@@ -10,6 +10,8 @@ from data.labels import plain_or_quoted, quoted
 
 Cell = str | None
 """A cell's text; None where the file has nothing at all, unlike "", which was written."""
+FILE = "@file"
+"""Column with the name of the file that a row stands in."""
 MOST_SHOWN, MOST_COLUMNS = 12, 60
 """Values, and names of columns to choose from, that are listed in one message."""
 
@@ -55,10 +57,11 @@ class Table:
     @property
     def labels(self) -> str:
         """The columns as they can be named on the command line."""
+        is_of_several_files = len({row.path for row in self.rows}) > 1
         labels = [
             name if self.names.count(name) == 1 else f"#{place + 1} {name}"
             for place, name in enumerate(self.names)
-            if name
+            if name and (name != FILE or is_of_several_files)
         ]
         return listed(labels, most=MOST_COLUMNS)
 
@@ -80,10 +83,10 @@ class Table:
         if not places and reference.endswith("..."):
             places = [place for place, name in enumerate(self.names) if name.startswith(reference[:-3])]
         if len(places) > 1:
+            is_beginning = reference.endswith("...") and reference not in self.names
+            which = "several columns begin so" if is_beginning else "several columns have that name"
             numbers = listed(f"#{place + 1}" for place in places)
-            raise InputError(
-                f"{self.path}: {plain_or_quoted(reference)}: several columns have that name; write {numbers}"
-            )
+            raise InputError(f"{self.path}: {plain_or_quoted(reference)}: {which}; write one of {numbers}")
         if places:
             return Column(reference, places[0])
         holder, _, keys = reference.rpartition(".")
@@ -156,10 +159,15 @@ def plain(name: str) -> str:
 
 
 def listed(texts: Iterable[str], most: int = MOST_SHOWN) -> str:
-    """Texts on one line, the first ``most`` of them."""
-    every = [plain_or_quoted(name) if (name := plain(text)) else "(empty)" for text in texts]
+    """Texts on one line, the first ``most`` of them; one with a comma in quotes, to be one text."""
+    every = [_one_of_several(name) if (name := plain(text)) else "(empty)" for text in texts]
     rest = f" and {len(every) - most} more" if len(every) > most else ""
     return ", ".join(every[:most]) + rest
+
+
+def _one_of_several(name: str) -> str:
+    shown = plain_or_quoted(name)
+    return quoted(name) if "," in name and shown == name else shown
 
 
 def counted(number: int, noun: str, plural: str | None = None) -> str:

@@ -134,7 +134,7 @@ def test_the_file_itself_is_never_written_over(tmp_path: Path, capsys: pytest.Ca
     path = table(tmp_path, "p,M1,M2,x")
     before = path.read_bytes()
     assert convert(path, *TABLE, *WORDS, out="in.csv") == 2
-    assert "is the file to be converted" in capsys.readouterr().err
+    assert "is a file to be read" in capsys.readouterr().err
     assert path.read_bytes() == before
 
 
@@ -413,3 +413,119 @@ def test_the_report_cautions_of_a_side_effect_where_sides_are_unknown(tmp_path: 
     assert "--no-side-effect" in caution
     assert unknown_sides(read_response_csv(ranked), has_side_effect=False) == []
     assert unknown_sides(read_response_csv(voted), has_side_effect=True) == []
+
+
+def test_what_has_to_be_told_is_asked_for_before_the_place_to_write(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = table(tmp_path, "p,M1,M2,x")
+    assert run(["convert", str(path), *TABLE]) == 2
+    assert "answer: x: nothing says what these mean" in capsys.readouterr().err
+    assert run(["convert", str(path), *TABLE, *WORDS]) == 2
+    assert "all is told, and 1 response can be written; say where by --out" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--answer", "answer"], "answer: is told twice as a column of answers to preference"),
+        (["--answer", "#4"], "#4: is told twice as a column of answers to preference"),
+        (["--question", ""], "--question: is empty"),
+        (["--participant", " "], "--participant: is empty"),
+    ],
+)
+def test_no_answer_counts_twice_and_no_name_is_empty(
+    tmp_path: Path, options: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = table(tmp_path, "p,M1,M2,x")
+    assert convert(path, *TABLE, *WORDS, *options) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out.csv").exists()
+
+
+def test_two_questions_may_share_a_column(tmp_path: Path) -> None:
+    path = table(tmp_path, "p,M1,M2,x")
+    assert convert(path, *TABLE[:-2], *WORDS, "--answer", "answer=one", "--answer", "answer=two") == 0
+    assert len(responses(path)) == 2
+
+
+@pytest.mark.parametrize("again", ["in.csv", "link.csv"])
+def test_a_file_named_twice_is_refused(
+    tmp_path: Path, again: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = table(tmp_path, "p,M1,M2,x")
+    (tmp_path / "link.csv").symlink_to(path)
+    out = str(tmp_path / "out.csv")
+    assert run(["convert", str(path), str(tmp_path / again), *TABLE, *WORDS, "--out", out]) == 2
+    assert "the file is named twice" in capsys.readouterr().err
+
+
+def test_a_ranking_named_twice_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = FORMS / "limesurvey.csv"
+    options = ["--from", "limesurvey", "--ranking", "rank[*]", "--ranking", "rank[1],rank[2],rank[3]"]
+    assert run(["convert", str(path), *options, "--out", str(tmp_path / "out.csv")]) == 2
+    assert "this ranking is told twice" in capsys.readouterr().err
+
+
+def test_a_line_among_several_files_needs_its_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = table(tmp_path, "p,M1,M2,x", name="1.csv")
+    second = table(tmp_path, "q,M1,M1,y", name="2.csv")
+    command = ["convert", str(first), str(second), *TABLE, *WORDS, "--out", str(tmp_path / "out.csv")]
+    assert run([*command, "--leave-out", "2"]) == 2
+    assert "write --leave-out FILE:2" in capsys.readouterr().err
+    assert run(command) == 2
+    assert "or this one by --leave-out 2.csv:2" in capsys.readouterr().err
+
+
+def test_a_line_to_leave_out_that_is_not_there_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = table(tmp_path, "p,M1,M2,x", "q,M1,M2,y")
+    assert convert(path, *TABLE, *WORDS, "--leave-out", "3", "--leave-out", "30") == 0
+    assert "not in the rows that count: --leave-out 30\n" in capsys.readouterr().out
+
+
+def test_a_line_in_an_archive_is_left_out_by_the_place_that_was_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = [
+        "--from",
+        "jatos",
+        "--participant",
+        "@study_result",
+        "--left",
+        "left",
+        "--right",
+        "right",
+        "--only",
+        "task=pair",
+    ]
+    words = ["--word", "0=A", "--word", "1=B", "--word", "2=equal"]
+    command = ["convert", str(FORMS / "jatos_results.jrzip"), *options, *words]
+    place = "study_result_42/comp-result_89/data.txt:1"
+    assert run([*command, "--out", str(tmp_path / "all.csv")]) == 0
+    assert f"line {place} (42)" in capsys.readouterr().out
+    assert run([*command, "--leave-out", place, "--out", str(tmp_path / "fewer.csv")]) == 0
+    assert "asked to be left out" in capsys.readouterr().out
+    assert len(responses(tmp_path / "all.csv", "fewer.csv")) < len(responses(tmp_path / "all.csv", "all.csv"))
+
+
+def test_responses_and_map_are_two_files_and_a_map_is_not_written_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = table(tmp_path, "p,M1,M2,x")
+    assert convert(path, *TABLE, *WORDS, "--write-map", str(tmp_path / "out.csv")) == 2
+    assert "--out and --write-map are the same file" in capsys.readouterr().err
+    assert convert(path, *TABLE, *WORDS, "--write-map", str(tmp_path / "map.toml")) == 0
+    assert convert(path, "--map", str(tmp_path / "map.toml"), out="map.toml") == 2
+    assert "is a file to be read" in capsys.readouterr().err
+
+
+def test_a_name_with_a_comma_is_one_name_in_a_list(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = table(tmp_path, 'p,"M1, new",M2,x')
+    assert convert(path, *TABLE, *WORDS) == 0
+    assert "modes: 'M1, new' (1), M2 (1)" in capsys.readouterr().out
