@@ -249,7 +249,7 @@ def _left_out(
             if kind in by_kind and spread not in at.values:
                 checks[kind] = by_kind[kind]
     if "subject_sd" in by_kind and len(rows.people) >= _FEWEST_IN_CAMPS:
-        checks |= _shape_ofpeople_of(weights @ tables.points)
+        checks |= _shape_of_people(weights @ tables.points)
     if rows.has_order:
         if (rows.before >= 0).any():
             checks["repeats"] = _copied(rows, answers, tables, weights)
@@ -264,7 +264,7 @@ def _left_out(
     return checks
 
 
-def _shape_ofpeople_of(own: FloatArray) -> dict[str, FloatArray]:
+def _shape_of_people(own: FloatArray) -> dict[str, FloatArray]:
     """Whether people's deviations, (set, person, coordinate), spread as those of normal people do.
 
     ``one_line``: how much of their spread lies along one direction. ``camps``: Sarle's coefficient of

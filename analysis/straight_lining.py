@@ -12,8 +12,9 @@ DeSimone 2017, "Response speed and response consistency as mutually validating i
 online samples" (less than a second an item).
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import nan
 from typing import Literal
 
@@ -139,6 +140,17 @@ class _Question:
     has_sides: bool
     chances: Callable[[NDArray[np.int64]], FloatArray]
 
+    @cached_property
+    def _numbers(self) -> Mapping[str, int]:
+        return {name: k for k, name in enumerate(self.rows.people)}
+
+    def places_of(self, who: str) -> NDArray[np.int64]:
+        """Where a person's answers stand, which are sorted by person."""
+        person = self._numbers.get(who)
+        if person is None:
+            return np.empty(0, dtype=np.int64)
+        return np.arange(*np.searchsorted(self.rows.person, [person, person + 1]))
+
     def levels_of(self, kind: Kind) -> tuple[int, ...]:
         """Places on the scale that belong to a line of this kind; none if the scale has no such answer."""
         levels = self.rows.levels
@@ -162,7 +174,7 @@ def _lines(table: ResponseTable, fit: Fit) -> Iterator[Line]:
     ]
     people = list(dict.fromkeys(name for q in asked for name in q.rows.people))
     for who in people:
-        own = [(q, _places(q.rows, who)) for q in asked]
+        own = [(q, q.places_of(who)) for q in asked]
         own = [(q, places) for q, places in own if len(places)]
         whole = [line for kind in (*_ONE_SIDE, "all much", "all equal") for line in _whole(who, kind, own)]
         for line in whole or _runs(who, own):
@@ -188,15 +200,6 @@ def _question(table: ResponseTable, fit: Fit, question: QuestionFit) -> _Questio
 
     counts = np.bincount(rows.level, minlength=rows.levels)
     return _Question(name, rows, not sides_are_alike(counts), chances)
-
-
-def _places(rows: AnswerRows, who: str) -> NDArray[np.int64]:
-    """Where a person's answers stand, which are sorted by person."""
-    try:
-        person = rows.people.index(who)
-    except ValueError:
-        return np.empty(0, dtype=np.int64)
-    return np.arange(*np.searchsorted(rows.person, [person, person + 1]))
 
 
 _Own = Sequence[tuple[_Question, NDArray[np.int64]]]
