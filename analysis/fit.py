@@ -252,8 +252,8 @@ def _question_fit(prepared: _Prepared, modes: tuple[str, ...], found: _Sampled |
     said = sampled.warnings
     if draws.diverging.mean() > DIVERGENCES_WORTH_SAYING:
         said += (
-            f"{draws.diverging.sum()} of {draws.diverging.size} draws diverged: "
-            "intervals may be too narrow; a higher target_accept tells.",
+            f"{draws.diverging.sum():,} of {draws.diverging.size:,} draws diverged: intervals may be too "
+            "narrow. A fit with a higher target_accept (in Python: FitSettings) would show it.",
         )
     return replace(
         sampled,

@@ -1,5 +1,6 @@
 """What a reader must know before quoting the report: the list "Before you quote this"."""
 
+import re
 from collections.abc import Sequence
 from math import isnan
 
@@ -152,7 +153,11 @@ def _about_the_questions(fit: Fit) -> list[str]:
         )
     many = len(fit.questions) > 1
     for text, names in by_text.items():
-        said.append(f"{listed(names)}: {text}" if many and len(names) < len(fit.questions) else text)
+        if many and len(names) < len(fit.questions):
+            said.append(f"{listed(names)}: {text}")
+        else:
+            # A number in the sentence is that of each question, not of all of them together.
+            said.append(f"In each question: {text}" if many and re.search(r"\d", text) else text)
     return said
 
 
@@ -171,7 +176,7 @@ def _about_people(found: Sequence[Finding]) -> list[str]:
         if f.reading == "likely"
     ]
     if said:
-        said[-1] += " A worth is that of someone in the middle of the group, no share of people."
+        said[-1] += " A worth is that of someone in the middle of the group, not a share of people."
     return said
 
 

@@ -174,8 +174,12 @@ def _one_question(found: Finding) -> list[Phrase]:
     first, rival = isolated(found.first), isolated(found.rival)
     above = percent_in_words(found.above_rival)
     if found.reading == "likely":
+        opening = Phrase(f"{first} likely ranks first for “{found.label}”", True)
+        if len(found.question.modes) == 2:
+            # To rank first and to be above the only other mode are one chance.
+            return [opening, Phrase(f" (a chance of {percent_in_words(found.chance)}), above {rival}. ")]
         return [
-            Phrase(f"{first} likely ranks first for “{found.label}”", True),
+            opening,
             Phrase(f" (a chance of {percent_in_words(found.chance)}). Its closest rival is {rival}: "),
             Phrase(f"the chance that {first} is really above it is {above}. "),
         ]

@@ -41,11 +41,18 @@ def equivalence_section(look: CloserLook, fit: Fit, tag: str) -> Section | None:
         words.append(f"Likely equal in practice: {shown}{more}.")
     else:
         words.append("No pair is likely equal in practice.")
+    n = len(look.equivalences)
     counted = [sum(e.reading == r for e in look.equivalences) for r in ("different", "open")]
-    whole = "Over all questions, " if len({e.question for e in look.equivalences}) > 1 else "Of all pairs, "
-    words[-1] += (
-        f" {whole}{counted[0]:,} of {len(look.equivalences):,} are likely different and {counted[1]:,} open."
-    )
+    if n == 1 and not equal:
+        words[-1] = (
+            "The two modes are likely different."
+            if counted[0]
+            else "Whether the two modes are different or equal in practice is open."
+        )
+    elif n > 1:
+        several = len({e.question for e in look.equivalences}) > 1
+        whole = "Over all questions, " if several else "Of all pairs, "
+        words[-1] += f" {whole}{counted[0]:,} of {n:,} are likely different and {counted[1]:,} open."
     if joint := difference_sentence(look.equivalences):
         words[-1] += f" {joint}"
     if counted[1] and look.equality is not None and look.equality.is_too_small:

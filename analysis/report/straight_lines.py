@@ -22,7 +22,7 @@ def straight_section(found: StraightLining) -> Section | None:
     more = f"; and {len(found.lines) - _MOST_NAMED:,} more" if len(found.lines) > _MOST_NAMED else ""
     words = [
         f"{named}{more}. People whom the model describes would hardly do so: it happens by chance, to "
-        f"anybody of all participants, in fewer than {BY_CHANCE:.0%} of studies"
+        f"anybody of all participants, in fewer than {100 * BY_CHANCE:g} % of studies"
         + (f"; for answers in less than {FASTEST_S:g} second a question no chance is worked out" if any(
             line.kind == "fast" for line in found.lines) else "")
         + ". That does not prove that somebody was careless: an honest person may find everything equal. "

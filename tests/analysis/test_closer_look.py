@@ -6,10 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from analysis.closer_look import closer_look
 from analysis.equivalence import EQUIVALENT_BELOW, equivalences
 from analysis.fit import fit
 from analysis.persons import agreements
 from analysis.predictive import predictive_checks
+from analysis.report.pairs import equivalence_section
 from analysis.results import Draws, FitSettings
 
 QUICK = FitSettings(draws=400, tune=300, chains=2)
@@ -56,3 +58,21 @@ def test_equal_draws_are_equal_in_practice_and_far_ones_different(divided_fit):
 
     assert (read(near).reading, read(near).p_equal) == ("equal in practice", 1.0)
     assert (read(near * 1.1).reading, read(near * 1.1).p_i_above) == ("different", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("reading", "sentence"),
+    [
+        ("different", "The two modes are likely different."),
+        ("open", "Whether the two modes are different or equal in practice is open."),
+        ("equal", "Likely equal in practice: M1 and M2 (preference)."),
+    ],
+)
+def test_of_one_pair_no_numbers_of_pairs_are_said(divided, divided_fit, reading, sentence):
+    (pair,) = equivalences(divided_fit)
+    look = replace(closer_look(divided, divided_fit), equivalences=(replace(pair, reading=reading),))
+    section = equivalence_section(look, divided_fit, "")
+    words = " ".join(section.words)
+    assert sentence in words
+    assert "1 of 1" not in words
+    assert "0 of 1" not in words

@@ -190,3 +190,31 @@ def test_what_lies_beyond_its_prior_is_pointed_out(study_case):
     )
     assert "In Q2 the gap below cut-point 1 lies beyond what its prior expects (2.4" in said("cut_1", 2.4)
     assert "beyond what its prior" not in said("subject_sd", 1.9) + said("cut_1", 1.9)
+
+
+def two_modes(case, above: float):
+    """The case with its first question alone, on its first two modes; M1 is above M2 with this chance."""
+    question = case.fit.questions[0]
+    first, second = question.modes[:2]
+    pair = next(p for p in question.pairs if {p.mode_i, p.mode_j} == {first.mode, second.mode})
+    of_two = replace(
+        question,
+        modes=(replace(first, p_best=above), replace(second, p_best=1 - above)),
+        pairs=(replace(pair, p_i_above_j=above if pair.mode_i == first.mode else 1 - above),),
+    )
+    return replace(case, fit=replace(case.fit, questions=(of_two,)))
+
+
+def test_of_two_modes_the_one_chance_is_said_once(study_case):
+    said = words(two_modes(study_case, 0.85))
+    assert "M1 likely ranks first for “most responsive” (a chance of 85 %), above M2." in said
+    assert said.count("85 %") == 1
+
+
+def test_a_number_that_holds_for_each_question_is_not_said_of_all_together(study_case):
+    warning = "All 13 answers that prefer a mode prefer what stands as A."
+    questions = tuple(replace(q, warnings=(warning,)) for q in study_case.fit.questions)
+    case = replace(study_case, fit=replace(study_case.fit, questions=questions))
+    said = cautions(case.table, case.fit, findings(case.fit), None, 0)
+    assert f"In each question: {warning}" in said
+    assert warning not in said
