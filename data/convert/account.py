@@ -195,7 +195,7 @@ class Account:
 def _meaning(item: Item, word: str, answer: str) -> str:
     """A word of the file and what it means; the columns alone say it where there is no word."""
     if item.spec.always is not None:
-        return f"{answer} in every row"
+        return answer
     return f"{plain_or_quoted(word)} = {answer}"
 
 

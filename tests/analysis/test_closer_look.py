@@ -65,7 +65,7 @@ def test_equal_draws_are_equal_in_practice_and_far_ones_different(divided_fit):
     [
         ("different", "The two modes are likely different."),
         ("open", "Whether the two modes are different or equal in practice is open."),
-        ("equal", "Likely equal in practice: M1 and M2 (preference)."),
+        ("equal in practice", "Likely equal in practice: M1 and M2 (preference)."),
     ],
 )
 def test_of_one_pair_no_numbers_of_pairs_are_said(divided, divided_fit, reading, sentence):
