@@ -102,7 +102,7 @@ def import_(
             count = import_responses(
                 responses, opened.study, opened.text, kept, repeats=repeats, note=_print_note
             )
-            print(f"{responses}: {count} responses imported")
+            print(f"{responses}: {count} response{'' if count == 1 else 's'} imported")
         elif stuck is not None:
             count = import_stuck(stuck, opened.study, opened.text, kept, note=_print_note)
             print(f"{stuck}: {count} stuck events imported")
