@@ -58,10 +58,10 @@ class AnswerRows:
         return self.mode_a > self.mode_b
 
     def collapsed(self) -> "AnswerRows":
-        """The same on three levels: how much more is not looked at."""
-        half = self.levels // 2
-        merged = np.where(self.level < half, 0, np.where(self.level >= self.levels - half, 2, 1))
-        return replace(self, level=merged.astype(np.int64), levels=3)
+        """The same on three levels, or two without a tie: how much more is not looked at."""
+        half, levels = self.levels // 2, 2 + self.levels % 2
+        merged = np.where(self.level < half, 0, np.where(self.level >= self.levels - half, levels - 1, 1))
+        return replace(self, level=merged.astype(np.int64), levels=levels)
 
     def of_people(self, chosen: NDArray[np.bool_]) -> "AnswerRows":
         """All answers of some people; ``chosen`` has shape (person,)."""

@@ -251,14 +251,24 @@ def answer_probabilities(
     -------
     ndarray, shape (draw, ..., level)
     """
-    p = np.exp(_model_log_probabilities(eta, parameters, levels, width))
-    if "lapse" in parameters:
-        lapse = parameters["lapse"][..., None]
-        p = (1.0 - lapse) * p + lapse / levels
-    return p
+    return np.exp(answer_log_probabilities(eta, parameters, levels, width))
 
 
-def _model_log_probabilities(
+def answer_log_probabilities(
+    eta: FloatArray,
+    parameters: Mapping[str, FloatArray],
+    levels: int,
+    width: FloatArray | float = 0.0,
+) -> FloatArray:
+    """The logarithm of ``answer_probabilities``, exact however unlikely an answer is."""
+    log_p = _careful_log_probabilities(eta, parameters, levels, width)
+    if "lapse" not in parameters:
+        return log_p
+    lapse = parameters["lapse"][..., None]
+    return np.asarray(np.logaddexp(np.log1p(-lapse) + log_p, np.log(lapse / levels)))
+
+
+def _careful_log_probabilities(
     eta: FloatArray, parameters: Mapping[str, FloatArray], levels: int, width: FloatArray | float
 ) -> FloatArray:
     """Log chance of each answer of someone who takes care."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from analysis.power.scenario import CUTS, LEVELS, Scenario
+from analysis.power.scenario import CUTS, Scenario
 from analysis.results import Fit, QuestionFit
 
 MOST_PAIRS = 200
@@ -60,8 +60,8 @@ def _scenario(question: QuestionFit, n_modes: int) -> Scenario:
     """People as the fit finds them, but for their preferences."""
     means = {p.name: p.mean for p in question.parameters}
     cuts = tuple(means[name] for name in sorted(means) if name.startswith("cut_"))
-    if not cuts and question.question.levels > 2:
-        cuts = CUTS[LEVELS]
+    if len(cuts) != (question.question.levels - 1) // 2:
+        cuts = CUTS[question.question.levels]
     return Scenario(
         worth=(1.0,) * n_modes,
         levels=question.question.levels,

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.answer_shares import answer_probabilities, group_lead
+from analysis.answer_shares import answer_log_probabilities, group_lead
 from analysis.calibration.world import Design, Truth
 from analysis.counts import Counts
 from analysis.model import Model
@@ -33,9 +33,8 @@ def quantities(draws: Draws, counts: Counts, model: Model, design: Design) -> di
     ability, worth = (x.reshape(-1, design.n_modes) for x in (draws.ability, draws.worth))
     # A fit that leaves out the side effect, since all answers are for one side, says that it is 0.
     none = np.zeros_like(draws.ability[..., 0])
-    parameters = {
-        name: draws.parameters.get(name, none).ravel() for name in model.parameter_names(design.modes)
-    }
+    names = model.parameter_names(design.modes)
+    parameters = {name: draws.parameters.get(name, none).ravel() for name in names}
     return _named(ability, worth, parameters, counts, model, design)
 
 
@@ -69,5 +68,5 @@ def _log_likelihood(
     cells = counts.pooled()
     columns = {name: values[:, None] for name, values in parameters.items()}
     lead = group_lead(cells, ability, columns)
-    p = answer_probabilities(lead, columns, model.levels)
-    return (cells.responses * np.log(p)).sum(axis=(1, 2))
+    log_p = answer_log_probabilities(lead, columns, model.levels)
+    return (cells.responses * log_p).sum(axis=(1, 2))

@@ -212,16 +212,16 @@ SOURCES = (
         "sampling. Journal of Machine Learning Research 25(72), 1–58.",
     ),
     Reference(
-        "Wichmann & Hill",
-        2001,
-        "Wichmann, F. A. and Hill, N. J. (2001). The psychometric function: I. Fitting, sampling, and "
-        "goodness of fit. Perception & Psychophysics 63(8), 1293–1313.",
-    ),
-    Reference(
         "Westfall & Young",
         1993,
         "Westfall, P. H. and Young, S. S. (1993). Resampling-based multiple testing: examples and methods "
         "for p-value adjustment. Wiley, New York.",
+    ),
+    Reference(
+        "Wichmann & Hill",
+        2001,
+        "Wichmann, F. A. and Hill, N. J. (2001). The psychometric function: I. Fitting, sampling, and "
+        "goodness of fit. Perception & Psychophysics 63(8), 1293–1313.",
     ),
     Reference(
         "Wood et al.",

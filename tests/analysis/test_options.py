@@ -19,6 +19,7 @@ from analysis.marginal import log_likelihoods
 from analysis.model import Model, Problem, describe, model_of, priors
 from analysis.new_people import parameters_of, replicated
 from analysis.persons import agreements
+from analysis.predictive import predictive_checks
 from analysis.results import OPTIONS, FitSettings
 from analysis.zero_sum import zero_sum_basis
 from data.errors import InputError
@@ -207,6 +208,13 @@ def test_expected_answers_are_those_of_simulated_new_people(fitted_with_all):
         total += np.bincount(drawn[:, (rows.mode_a == j) & (rows.mode_b == i)].ravel(), minlength=5)[::-1]
     assert first.expected == pytest.approx(total / total.sum(), abs=0.01)
     assert first.much_i[0] == pytest.approx(first.expected[0])
+
+
+def test_checks_of_the_model_leave_out_what_an_option_holds(fitted_with_all):
+    table, fitted = fitted_with_all
+    kinds = {check.kind for check in predictive_checks(table, fitted).checks}
+    assert kinds & {"wins", "ties", "level", "spread"}
+    assert not kinds & {"lapse", "width_by_person", "side_by_person", "side_drift"}
 
 
 def test_people_have_own_worths_with_all_options_on(fitted_with_all):
