@@ -8,11 +8,14 @@ question only its lower limit is known (Bonferroni).
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import prod
+from math import floor, prod
 
 import numpy as np
 
 from analysis.figures.labels import percent_in_words
+
+_ROUNDING = 1e-9
+"""Of sums of chances: 0.15 + 0.85 shall not be a per cent less than 1."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,9 @@ def joint_sentence(claims: Sequence[Claim], one: str, many: str) -> str:
     if least and together < 0.5:
         # The limit for claims about one question falls to 0 with many of them, and says nothing then.
         return f"{said}."
-    return f"{said}; the chance that all of them are right is {least}{percent_in_words(together)}."
+    # A limit is rounded down: “at least” more than is known would be kinder than the answers.
+    chance = floor(100 * together + _ROUNDING) / 100 if least else together
+    return f"{said}; the chance that all of them are right is {least}{percent_in_words(chance)}."
 
 
 def _number(expected: float) -> str:

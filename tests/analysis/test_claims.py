@@ -40,3 +40,13 @@ def test_sure_claims_are_not_called_certain() -> None:
     sure = [Claim("", "a", 1.0, "Q1"), Claim("", "b", 1.0, "Q2")]
     assert "fewer than 0.01 are expected" in joint_sentence(sure, "first", "firsts")
     assert "over 99 %" in joint_sentence(sure, "first", "firsts")
+
+
+def test_a_lower_limit_is_never_rounded_up() -> None:
+    """0.74525 is not “at least 75 %”, and a limit of 0.997 is not “at least over 99 %”."""
+    unsure = [Claim("", "a", 0.87, "Q1"), Claim("", "b", 0.87525, "Q1")]
+    assert joint_sentence(unsure, "pair", "pairs").endswith("right is at least 74 %.")
+    sure = [Claim("", "a", 0.998, "Q1"), Claim("", "b", 0.999, "Q1")]
+    assert joint_sentence(sure, "pair", "pairs").endswith("right is at least 99 %.")
+    whole = [Claim("", "a", 0.95, "Q1"), Claim("", "b", 0.85, "Q1")]
+    assert joint_sentence(whole, "pair", "pairs").endswith("right is at least 80 %.")
