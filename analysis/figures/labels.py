@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
+from math import isnan
 
 LIKELY = 0.8
 """A first place is called likely, and its chance printed bold, from here on; below it is open."""
@@ -118,6 +119,13 @@ def fitted_pair(first: str, second: str, room_px: float, size_pt: float = 9) -> 
     half = (room_px - width_px(" over ", size_pt)) / 2
     spare = max(0.0, half - width_px(one_line(first), size_pt), half - width_px(one_line(second), size_pt))
     return f"{fitted(first, half + spare, size_pt)} over {fitted(second, half + spare, size_pt)}"
+
+
+def p_value(p: float) -> str:
+    """A p value with three digits after the point, never 0; empty if it is not known."""
+    if isnan(p):
+        return ""
+    return "<0.001" if p < 0.0005 else f"{p:.3f}"
 
 
 def percent_in_words(probability: float) -> str:

@@ -5,7 +5,7 @@ from math import isnan
 
 from analysis.closer_look import CloserLook
 from analysis.consistency import CIRCULAR_BY_CHANCE, Consistency
-from analysis.figures.labels import isolated, one_line, percent, percent_in_words
+from analysis.figures.labels import isolated, one_line, p_value, percent, percent_in_words
 from analysis.figures.own_modes import draw_by_modes
 from analysis.figures.persons import MOST_INTERVALS, MOST_MODES, draw_persons
 from analysis.persons import MOST_PEOPLE, Agreement
@@ -174,7 +174,7 @@ def consistency_section(look: CloserLook) -> Section | None:
             f"{c.reversed:,}" if c.repeated else "",
             _number(c.retest),
             _number(c.u),
-            "" if isnan(c.u_p) else f"{c.u_p:.3f}",
+            p_value(c.u_p),
         )
         for c in together
     )

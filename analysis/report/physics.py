@@ -13,7 +13,7 @@ from analysis.association import (
 from analysis.closer_look import CloserLook
 from analysis.covariates import FEWEST_MODES, SLOPE_SD, SLOPES_SECTION, CovariateEffect
 from analysis.figures.association import draw_association
-from analysis.figures.labels import isolated, one_line, percent
+from analysis.figures.labels import isolated, one_line, p_value, percent
 from analysis.figures.slopes import draw_slopes
 from analysis.figures.style import Drawing
 from analysis.measures import MEASURES
@@ -52,7 +52,7 @@ def physics_section(
             f"{a.participants:,}",
             _interval(a.correlation, a.correlation_low, a.correlation_high),
             "" if isnan(a.mode_share) else f"{percent(a.mode_share)} %",
-            "" if isnan(a.p_in_list) else f"{a.p_in_list:.3f}",
+            p_value(a.p_in_list),
         )
         for a in look.associations
     )

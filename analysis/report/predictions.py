@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from analysis.closer_look import CloserLook
-from analysis.figures.labels import isolated, one_line, percent
+from analysis.figures.labels import isolated, one_line, p_value, percent
 from analysis.figures.predictive import MOST_PAIRS, NAMES, draw_predictive
 from analysis.predictive import SHARES, UNLIKELY, Kind, PredictiveCheck
 from analysis.report.findings import listed
@@ -108,7 +108,7 @@ def _shares(check: PredictiveCheck) -> tuple[str, str, str]:
 
 
 def _p(p: float) -> str:
-    return f"{p:.3f}" if p < 0.1 else f"{p:.2f}"
+    return p_value(p) if p < 0.1 else f"{p:.2f}"
 
 
 def _meanings(checks: Sequence[PredictiveCheck]) -> list[str]:

@@ -4,15 +4,28 @@ import io
 import re
 import xml.etree.ElementTree as ElementTree
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.text import Text
 from PIL import Image
 
 from analysis.answer_shares import answer_shares
-from analysis.figures.labels import distinct, fitted, isolated, one_line, percent, shortened, width_px
+from analysis.figures.labels import (
+    distinct,
+    fitted,
+    isolated,
+    one_line,
+    p_value,
+    percent,
+    shortened,
+    width_px,
+)
+from analysis.figures.parameters import PANELS, draw_parameters
 from analysis.figures.worth import draw_worth
+from analysis.results import Quantity
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -96,6 +109,47 @@ def invented(n_modes, n_questions):
     return Fit(tuple(fits), FitSettings(), modes, "invented")
 
 
+def with_every_parameter(fit):
+    """The same fit with values for every parameter that a panel shows, about as long as they get."""
+    names = [name for _, own in PANELS for name in own]
+    values = tuple(
+        Quantity(name, *((0.4, 0.3, 0.0, 1.45) if name.endswith("sd") else (-0.1, 0.5, -1.06, 0.94)))
+        for name in names
+    )
+    return replace(fit, questions=tuple(replace(q, parameters=values) for q in fit.questions))
+
+
+@pytest.mark.parametrize("kept", [5, 6, 8])
+def test_no_text_of_the_parameters_runs_into_another(monkeypatch, kept):
+    """Titles, numbers at ticks and names of questions, where the model has all its options."""
+    from analysis.figures import parameters as drawing
+
+    boxes = []
+
+    def measured(figure, *rest):
+        figure.canvas.draw()
+        shown = [t for t in figure.findobj(Text) if t.get_text().strip() and t.get_visible()]
+        ticks = [t for a in figure.axes for t in a.get_yticklabels() + _outside(a)]
+        boxes.extend((t.get_text(), t.get_window_extent()) for t in shown if t not in ticks)
+        return finish(figure, *rest)
+
+    finish = drawing.finish
+    monkeypatch.setattr(drawing, "finish", measured)
+    monkeypatch.setattr(drawing, "PANELS", PANELS[-kept:])
+    assert draw_parameters(with_every_parameter(invented(3, 2)).questions) is not None
+    meeting = [
+        (one, other) for k, (one, box) in enumerate(boxes) for other, at in boxes[:k] if box.overlaps(at)
+    ]
+    assert len(boxes) > 3 * kept
+    assert meeting == []
+
+
+def _outside(axes):
+    """Labels of ticks beyond the limits, which are not drawn."""
+    low, high = axes.get_xlim()
+    return [t for t, x in zip(axes.get_xticklabels(), axes.get_xticks(), strict=True) if not low <= x <= high]
+
+
 def test_what_is_expected_of_a_pair_is_the_mean_over_draws_orders_and_people():
     from analysis.answer_shares import _expected
     from analysis.results import Draws
@@ -166,3 +220,10 @@ def test_marks_that_turn_text_round_are_dropped_and_right_to_left_names_isolated
 )
 def test_a_chance_is_never_rounded_to_certainty(chance, said):
     assert percent(chance) == said
+
+
+def test_a_p_value_is_never_rounded_to_nothing():
+    assert [p_value(p) for p in (0.0, 0.0004, 0.0006, 0.03, 1.0)] == [
+        "<0.001", "<0.001", "0.001", "0.030", "1.000",
+    ]  # fmt: skip
+    assert p_value(float("nan")) == ""
