@@ -103,15 +103,15 @@ SOURCES = (
     ),
     Reference(
         "Johnson",
-        2003,
-        "Johnson, T. R. (2003). On the use of heterogeneous thresholds ordinal regression models to account "
-        "for individual differences in response style. Psychometrika 68(4), 563–583.",
-    ),
-    Reference(
-        "Johnson",
         2005,
         "Johnson, J. A. (2005). Ascertaining the validity of individual protocols from web-based personality "
         "inventories. Journal of Research in Personality 39(1), 103–129.",
+    ),
+    Reference(
+        "Johnson",
+        2003,
+        "Johnson, T. R. (2003). On the use of heterogeneous thresholds ordinal regression models to account "
+        "for individual differences in response style. Psychometrika 68(4), 563–583.",
     ),
     Reference(
         "Johnson",

@@ -66,11 +66,11 @@ def test_the_methods_state_the_model_that_was_fitted(study_case):
     assert "<i>τ</i>" not in bare
     assert "no side effect" in bare
     assert "(pooled)" in bare
-    assert "Davidson (1970)" in text_of(with_settings(study_case, link="adjacent"))
+    assert "Davidson (1970)" in text_of(with_settings(study_case, levels=3, link="adjacent"))
     gibbs = text_of(with_settings(study_case, engine="gibbs"))
     assert "Caron & Doucet (2012)" in gibbs
     assert "No-U-Turn" not in gibbs
-    assert "“much more” was taken as “more”" in gibbs
+    assert "Every stronger answer was taken as the weakest preference." in gibbs
 
 
 def test_the_papers_figure_is_named_for_its_own_study_alone(study_case):
