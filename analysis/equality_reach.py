@@ -71,8 +71,8 @@ class EqualityReach:
         return (
             "So few answers cannot show that modes are equal: even of two that are exactly equal, "
             f"{share} of this size would call them equal in practice. For {100 * WANTED:.0f} % of studies to "
-            f"do so it takes {needed}, if people differ as they do here. “elbowroom power --conclusion "
-            "equal” plans for it."
+            f"do so it takes {needed}, if people differ as much as is estimated here. “elbowroom "
+            "power --conclusion equal” plans for it."
         )
 
 

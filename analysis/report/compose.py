@@ -38,6 +38,10 @@ from analysis.stuck_contrasts import StuckContrast
 from data.responses import ResponseTable
 from data.study import Study
 
+_OTHER_SCALES = {"lapse": "“careless”", "scale_sd": "“own widths”"}
+"""Parameters that are not in logits, by the names of their panels."""
+_MARKERS = ("circle", "square", "diamond", "triangle")
+"""Of the cut-points in their order, in the figure of the parameters."""
 _ERRORS = " In the numbers, ± is the Monte Carlo standard error: by how much another seed changes a value."
 
 
@@ -224,9 +228,10 @@ def _about_findings(found: Sequence[Finding], look: CloserLook) -> tuple[str, ..
     named = {(f.question.question.name, f.first) for f in found if f.first}
     errors = [e.mcse for e in look.errors if e.quantity == "p_best" and (e.question, e.mode_i) in named]
     if errors:
+        what = "this chance by" if len(errors) == 1 else "these chances by up to"
         said.append(
-            f"Another seed of the sampler changes these chances by up to {100 * max(errors):.1f} percentage "
-            f"points (Monte Carlo standard error)."
+            f"Another seed of the sampler changes {what} {100 * max(errors):.1f} percentage points (Monte "
+            "Carlo standard error)."
         )
     return tuple(said)
 
@@ -290,12 +295,12 @@ def _parameters(fit: Fit, look: CloserLook, tag: str) -> Section | None:
         said.append(_cut_points_in_words(fit))
     if "lapse" in names:
         about.append("careless answers")
-        said.append("Careless: share of the answers that do not depend on the modes, not in logits.")
+        said.append("Careless: share of the answers that do not depend on the modes.")
     if "side_drift" in names:
         about.append("position")
         said.append(
             "Side drift: how much the side effect changes from a participant's first comparison to the last. "
-            "What each mode gained by being used stands in the table."
+            "What each mode gained by being used (learning) stands in the numbers."
         )
     if "log_nu" in names:
         about.append("ties")
@@ -307,7 +312,9 @@ def _parameters(fit: Fit, look: CloserLook, tag: str) -> Section | None:
         said.append("Own sides: spread of the participants' own side effects.")
     if "scale_sd" in names:
         said.append("Own widths: spread of the logarithm of how wide each participant uses the scale.")
-    caption = f"{' '.join(said)} On the logit scale, with 94 % credible intervals.{_ERRORS}"
+    others = [shown for name, shown in _OTHER_SCALES.items() if name in names]
+    but = f", but {listed(others)}" if others else ""
+    caption = f"{' '.join(said)} On the logit scale{but}, with 94 % credible intervals.{_ERRORS}"
     return Section(
         f"{listed(about).capitalize()}",
         (drawing,),
@@ -324,9 +331,10 @@ def _cut_points_in_words(fit: Fit) -> str:
     if most <= 3:
         return "Cut-points: how large a difference must feel to be noticed."
     if most > 5:
+        markers = listed(_MARKERS[: (most - 1) // 2])
         return (
-            "Cut-points: how large a difference must feel for each stronger answer, in their order circle, "
-            "square, diamond and triangle."
+            "Cut-points: how large a difference must feel for each stronger answer, in their order "
+            f"{markers}."
         )
     if most == 4:
         return "Cut-point: how large a difference must feel to be called “much more”."

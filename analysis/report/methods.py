@@ -199,7 +199,7 @@ def _answers(fit: Fit, levels: set[int], before: str) -> list[Paragraph]:
         ),
         Paragraph(
             f"The cut-points θ lie symmetrically, so that A and B weigh the same: {listed(points)}. The "
-            "larger a cut-point, the more answers fall into the middle."
+            "larger the cut-points, the more answers lie near the middle of the scale."
             + (f" {width}" if width else "").format(what="cut-points are multiplied")
         ),
     ]

@@ -45,9 +45,9 @@ _HIGH: dict[Kind, str] = {
         "the model expects them to differ about all modes alike. See “Is it one order for all?”"
     ),
     "width_by_person": (
-        "people use the scale more differently than the model allows for: some say “about the same” or "
-        "“much” more often than others. “elbowroom report --person-scale” gives each person an own width "
-        "of the scale"
+        "people use the scale more differently than the model allows for: some choose answers near the "
+        "middle of the scale more often than others do. “elbowroom report --person-scale” gives each person "
+        "an own width of the scale"
     ),
     "side_by_person": (
         "some people favour what is shown as A, others what is shown as B, more than the model allows for. "

@@ -228,13 +228,19 @@ def _error_of(errors: Sequence[MonteCarloError]) -> _ErrorOf:
 
 def _mean(text: str, error: float | None, digits: int) -> str:
     """A mean with its Monte Carlo error where that is known."""
-    return text if error is None else f"{text} ± {error:.{digits}f}"
+    return text if error is None else f"{text} ± {_never_zero(error, digits)}"
+
+
+def _never_zero(error: float, digits: int) -> str:
+    """An error in so many digits after the point, or below the least of them: it is never 0."""
+    least = 10.0**-digits
+    return f"<{least:.{digits}f}" if error < least / 2 else f"{error:.{digits}f}"
 
 
 def _chance(probability: float, error: float | None) -> str:
     """A chance in per cent with its Monte Carlo error, where that is known and the chance is not a limit."""
     shown = percent(probability)
-    return f"{shown} %" if error is None or shown[0] in "<>" else f"{shown} ± {100 * error:.1f} %"
+    return f"{shown} %" if error is None or shown[0] in "<>" else f"{shown} ± {_never_zero(100 * error, 1)} %"
 
 
 def worth_table(fit: Fit, errors: Sequence[MonteCarloError]) -> Table:

@@ -40,9 +40,10 @@ def about_priors(fit: Fit) -> list[str]:
         _, value, question = max(strained, key=lambda one: one[0])
         what, scale = _SCALES.get(name, (f"gap below cut-point {name.removeprefix('cut_')}", CUT_GAP_SCALE))
         more = f" and in {len(strained) - 1} more" if len(strained) > 1 else ""
+        unit = " on the log scale" if name == "scale_sd" else " logits"
         sentences.append(
             f"In {isolated(question.question.name)}{more} the {what} lies beyond what its prior expects "
-            f"({value:.1f} logits; the prior gives less than 5 % to more than {STRAINED * scale:g}). So the "
+            f"({value:.1f}{unit}; the prior gives less than 5 % to more than {STRAINED * scale:g}). So the "
             "prior draws it towards 0, and what it cannot take up is taken up by the worths."
         )
     return sentences

@@ -62,8 +62,8 @@ def _scores(scores: tuple[ModelScore, ...]) -> Section | None:
         words.append(f"{'; '.join(said)}.")
     elif any(s.reading == "not told apart" for s in scores):
         words.append(
-            "No model is told apart from the report's: these answers cannot show that leaving out the side "
-            "effect or people's differences would predict anyone better, or worse."
+            "No model is told apart from the report's: these answers cannot show that any of them would "
+            "predict people better, or worse."
         )
     if blank:
         words.append(f"No score: {_listed_with_reasons(blank)}. {_NOT_USED}")

@@ -1,6 +1,5 @@
 """The report's section on people who answer in a line, and what it means for who quotes the report."""
 
-from collections.abc import Sequence
 from math import isnan
 
 from analysis.figures.labels import isolated, one_line
@@ -29,7 +28,7 @@ def straight_section(found: StraightLining) -> Section | None:
         "Nobody is left out for it; the complete list is in careless.csv.",
     ]  # fmt: skip
     if found.changes:
-        words.append(_changed(found.changes) + " Worth and chance to rank first, with them and without:")
+        words.append(_changed(found) + " Worth and chance to rank first, with and without:")
         table = changes_table(found.changes, "careless_left_out.csv")
     else:
         words.append("Without them nobody would be left.")
@@ -48,7 +47,7 @@ def about_lines(found: StraightLining) -> list[str]:
     verb = "answers" if len(people) == 1 else "answer"
     first = found.lines[0]
     what = f" ({isolated(first.participant)} {_what(first)})" if len(people) > 1 else f": {_what(first)}"
-    without = _changed(found.changes) if found.changes else "Without them nobody would be left."
+    without = _changed(found) if found.changes else "Without them nobody would be left."
     return [f"{named} {verb} in a line{what}. {without} See “{HEADING}”."]
 
 
@@ -69,8 +68,10 @@ def _what(line: Line) -> str:
     return f"{whole} in all of {line.of:,} answers"
 
 
-def _changed(changes: Sequence[LagChange]) -> str:
+def _changed(found: StraightLining) -> str:
     """Where another mode comes first without them."""
+    changes = found.changes
+    without = "Without this person" if len(found.participants) == 1 else "Without these people"
     by_question: dict[str, list[LagChange]] = {}
     for change in changes:
         by_question.setdefault(change.question, []).append(change)
@@ -86,14 +87,15 @@ def _changed(changes: Sequence[LagChange]) -> str:
                 other.append(f"{one_line(then.mode)} on {isolated(question)}")
     said = []
     if other:
-        said.append(f"Without them another mode comes first: {listed(other)}.")
+        said.append(f"{without} another mode comes first: {listed(other)}.")
     if lost:
-        said.append(f"Without them there is no ranking for {listed(lost)}.")
+        said.append(f"{without} there is no ranking for {listed(lost)}.")
     known = [c for c in changes if not isnan(c.worth_with) and not isnan(c.worth_without)]
     if not said and known:
         most = max(known, key=lambda c: abs(c.worth_without - c.worth_with))
+        same = "the same mode comes" if len(by_question) == 1 else "the same modes come"
         said.append(
-            "Without them the same modes come first; the largest change of a worth is that of "
+            f"{without} {same} first; the largest change of a worth is that of "
             f"{one_line(most.mode)} on {isolated(most.question)}, from {most.worth_with:.3f} to "
             f"{most.worth_without:.3f}."
         )

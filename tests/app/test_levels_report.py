@@ -46,6 +46,12 @@ def test_a_scale_of_any_length_is_reported_from_start_to_end(tmp_path, levels):
     assert strength[["much_i", "much_j"]].to_numpy().sum() == is_strong.sum()
     page = (out / "report.html").read_text(encoding="utf-8")
     assert {4: "with four levels", 7: "with seven levels", 9: "with nine levels"}[levels] in page
+    markers = {
+        4: "Cut-point: how large",
+        7: "circle, square and diamond.",
+        9: "circle, square, diamond and tri",
+    }
+    assert markers[levels] in page
     checked = pd.read_csv(out / "predictive.csv")
     assert ("ties" in checked["kind"].tolist()) == (levels % 2 == 1)
     assert (checked["kind"] == "level").sum() == 2 * (levels // 2)
@@ -65,6 +71,7 @@ def test_options_reach_parameters_methods_and_summary(tmp_path):
     assert "the place of a comparison and learning (position)" in summary["model"]
     assert summary["priors"]["lapse"] == "Beta(1, 9)"
     page = (out / "report.html").read_text(encoding="utf-8")
+    assert "On the logit scale, but “careless” and “own widths”, with 94 % credible intervals." in page
     for source in ("Wichmann, F. A.", "Meade, A. W.", "Johnson, T. R."):
         assert source in page
 

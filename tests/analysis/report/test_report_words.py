@@ -2,8 +2,15 @@
 
 from dataclasses import replace
 
+from analysis.closer_look import closer_look
+from analysis.predictive import PredictiveCheck, PredictiveChecks
 from analysis.report.cautions import cautions
+from analysis.report.compose import _about_findings
 from analysis.report.findings import findings, lead
+from analysis.report.model_cautions import model_cautions
+from analysis.report.page import _chance, _mean
+from analysis.report.parameter_cautions import about_priors
+from analysis.results import Quantity
 from analysis.stuck import stuck_rates
 
 
@@ -218,3 +225,42 @@ def test_a_number_that_holds_for_each_question_is_not_said_of_all_together(study
     said = cautions(case.table, case.fit, findings(case.fit), None, 0)
     assert f"In each question: {warning}" in said
     assert warning not in said
+
+
+def test_the_spread_of_widths_is_not_called_logits(study_case):
+    wide = (Quantity("scale_sd", 1.3, 0.2, 0.9, 1.7),)
+    (said, *_) = about_priors(replace(study_case.fit, questions=(with_parameters(study_case, wide),)))
+    assert "(1.3 on the log scale; the prior gives less than 5 % to more than 1)" in said
+    apart = (Quantity("subject_sd", 2.4, 0.2, 1.9, 2.9),)
+    (said, *_) = about_priors(replace(study_case.fit, questions=(with_parameters(study_case, apart),)))
+    assert "(2.4 logits; the prior gives less than 5 % to more than 2)" in said
+
+
+def with_parameters(case, parameters):
+    return replace(case.fit.questions[0], parameters=parameters)
+
+
+UNEVEN = PredictiveCheck("Q1", "width_by_person", "", 4.0, 0.0, -1.0, 1.0, 0.0001, 0.001, True)
+
+
+def test_a_scale_without_a_middle_is_not_said_to_have_one():
+    """The caution on the use of the scale holds for scales of three levels and more, odd or even."""
+    (said,) = model_cautions(PredictiveChecks((UNEVEN,), 0.1, 1, 10, 10))
+    assert "some choose answers near the middle of the scale more often than others do" in said
+    assert "“about the same”" not in said
+
+
+def test_one_chance_is_not_called_several(study_case):
+    look = closer_look(study_case.table, study_case.fit)
+    found = findings(study_case.fit)
+    assert "changes these chances by up to" in _about_findings(found, look)[-1]
+    assert "changes this chance by " in _about_findings(found[:1], look)[-1]
+
+
+def test_a_monte_carlo_error_is_never_printed_as_none():
+    assert [_mean("0.029", e, 3) for e in (0.0002, 0.0006, None)] == [
+        "0.029 ± <0.001",
+        "0.029 ± 0.001",
+        "0.029",
+    ]
+    assert [_chance(0.9, e) for e in (0.0003, 0.004)] == ["90 ± <0.1 %", "90 ± 0.4 %"]
