@@ -151,7 +151,7 @@ def _outside(axes):
 
 
 def test_what_is_expected_of_a_pair_is_the_mean_over_draws_orders_and_people():
-    from analysis.answer_shares import _expected
+    from analysis.answer_shares import _expected, _Shown
     from analysis.results import Draws
 
     rng = np.random.default_rng(0)
@@ -169,7 +169,8 @@ def test_what_is_expected_of_a_pair_is_the_mean_over_draws_orders_and_people():
         for d, s, t in zip(lead, side[0], tau[0], strict=True)
     ]
     by_hand = (3 * np.mean(shown) + 1 * np.mean(swapped)) / 4
-    first, second = _expected(draws, 2, 0, 1, 3, 1).mean(axis=0)
+    ways = [_Shown(3, None), _Shown(1, None)]
+    first, second = _expected(draws, 2, ("M1", "M2"), 0, 1, ways).mean(axis=0)
     assert first == pytest.approx(by_hand, abs=2e-3)
     assert first + second == pytest.approx(1, abs=1e-12)
 
