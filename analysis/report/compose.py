@@ -313,8 +313,8 @@ def _parameters(fit: Fit, look: CloserLook, tag: str) -> Section | None:
     if "scale_sd" in names:
         said.append("Own widths: spread of the logarithm of how wide each participant uses the scale.")
     others = [shown for name, shown in _OTHER_SCALES.items() if name in names]
-    but = f", but {listed(others)}" if others else ""
-    caption = f"{' '.join(said)} On the logit scale{but}, with 94 % credible intervals.{_ERRORS}"
+    apart = f", except {listed(others)}" if others else ""
+    caption = f"{' '.join(said)} On the logit scale{apart}, with 94 % credible intervals.{_ERRORS}"
     return Section(
         f"{listed(about).capitalize()}",
         (drawing,),
