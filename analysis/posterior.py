@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.model import LEARNING
 from analysis.results import Fit, QuestionFit
 
 if TYPE_CHECKING:
@@ -56,13 +57,23 @@ def _posterior(fit: Fit, sampled: list[QuestionFit]) -> xr.Dataset:
     axes = ("chain", "draw", "question", "mode")
     coordinates = _coordinates(ability.shape[:2], sampled) | {"mode": list(fit.modes)}
     dataset = xr.Dataset({"ability": (axes, ability), "worth": (axes, worth)}, coordinates)
-    for name in dict.fromkeys(name for d in draws.values() for name in d.parameters):
+    if fit.settings.position:
+        # What modes gain by use has an axis for them, as abilities do: modes may be named in any way.
+        learning = np.stack([_over_all(_learning(q), q, fit.modes) for q in sampled], axis=2)
+        dataset["learning"] = (axes, learning)
+    names = dict.fromkeys(name for d in draws.values() for name in d.parameters)
+    for name in (name for name in names if not name.startswith(LEARNING)):
         having = [question for question, d in draws.items() if name in d.parameters]
         axis = "question" if len(having) == len(draws) else f"question_{name}"
         values = np.stack([draws[question].parameters[name] for question in having], axis=-1)
         dataset = dataset.assign_coords({axis: having})
         dataset[name] = (("chain", "draw", axis), values)
     return dataset
+
+
+def _learning(question: QuestionFit) -> NDArray[np.float64]:
+    assert question.draws is not None
+    return np.stack([question.draws.parameters[LEARNING + mode] for mode in question.mode_names], axis=-1)
 
 
 def _over_all(

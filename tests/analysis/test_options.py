@@ -224,6 +224,15 @@ def test_people_have_own_worths_with_all_options_on(fitted_with_all):
     assert 0 < agreement.share_mean < 1
 
 
+def test_learning_has_an_axis_of_modes_whatever_they_are_called(fitted_with_all):
+    _, fitted = fitted_with_all
+    posterior = fitted.posterior["posterior"]
+    assert posterior["learning"].dims == ("chain", "draw", "question", "mode")
+    assert not [name for name in posterior if str(name).startswith("learning_")]
+    draws = fitted.questions[0].draws.parameters["learning_M2"]
+    assert np.array_equal(posterior["learning"].sel(mode="M2").to_numpy()[..., 0], draws)
+
+
 def test_each_option_is_compared_on_and_off():
     names = list(_variants(SETTINGS, 5, knows_order=True))
     assert names == [
