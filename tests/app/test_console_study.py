@@ -104,7 +104,7 @@ def test_one_fit_at_a_time_which_can_be_cancelled(desk: Desk) -> None:
     fit.start(desk, include_simulated=False)
     fit.start(desk, include_simulated=False)
     assert fit.state == "running"
-    assert [entry.action for entry in desk.store.audit_log()] == ["full fit"]
+    assert [entry.action for entry in desk.store.audit_log()] == ["full fit", "look at results"]
     process = fit._process
     assert process is not None
     fit.cancel()
