@@ -210,7 +210,8 @@ def test_people_are_as_consistent_as_if_the_question_were_alone(mixed, tmp_path)
 
 
 def test_the_joint_model_of_pymc_keeps_questions_with_as_many_modes_together(tmp_path):
-    pymc_engine = pytest.importorskip("analysis.engines.pymc_engine")
+    from analysis.engines import pymc_engine
+
     rows = [*answers("speech", SPEECH), *answers("music", MUSIC), *answers("tone", ("t1", "t2", "t3"))]
     table = read_response_csv(write(tmp_path, rows))
     model = model_of(QUICK, 3, has_participants=True)
